@@ -1,0 +1,26 @@
+#pragma once
+
+#include <cmath>
+
+namespace ehdjet {
+
+/// A sum whose round-off does not grow with the number of terms: time over millions of steps,
+/// mass over thousands of beads.
+/// source : A. Neumaier, Z. Angew. Math. Mech. 54 (1974) 39
+class CompensatedSum {
+public:
+  CompensatedSum(double start = 0) // NOLINT(google-explicit-constructor): stands for a number
+      : sum_(start) {}
+  CompensatedSum& operator+=(double term) {
+    const double next = sum_ + term;
+    carry_ += std::abs(sum_) >= std::abs(term) ? (sum_ - next) + term : (term - next) + sum_;
+    sum_ = next;
+    return *this;
+  }
+  operator double() const { return sum_ + carry_; } // NOLINT(google-explicit-constructor)
+
+private:
+  double sum_, carry_ = 0;
+};
+
+} // namespace ehdjet

@@ -1,0 +1,95 @@
+#include "ehdjet/core/csv_table.hpp"
+
+#include "ehdjet/core/error.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <system_error>
+#include <utility>
+
+namespace ehdjet {
+
+CsvTable::CsvTable(const std::filesystem::path& file, std::vector<std::string_view> required,
+                   std::vector<std::string_view> optional)
+    : name_(file.string())
+    , in_(file)
+    , wanted_(std::move(required)) {
+  const std::size_t required_count = wanted_.size();
+  wanted_.insert(wanted_.end(), optional.begin(), optional.end());
+  position_.assign(wanted_.size(), absent);
+
+  std::error_code error;
+  if (!in_ || std::filesystem::is_directory(file, error))
+    throw InputError(name_ + ": cannot be read (" + std::generic_category().message(errno) + ")");
+  if (!next_line()) refuse(1, "no header line with the names of the columns");
+  split();
+  columns_ = fields_.size();
+  for (std::size_t i = 0; i < fields_.size(); ++i) {
+    const auto found = std::ranges::find(wanted_, fields_[i].text);
+    if (found == wanted_.end()) continue;
+    std::size_t& position = position_[static_cast<std::size_t>(found - wanted_.begin())];
+    if (position != absent)
+      refuse(fields_[i].start, "column " + std::string(fields_[i].text) + " appears twice");
+    position = i;
+  }
+  for (std::size_t c = 0; c < required_count; ++c)
+    if (!has(c)) refuse(1, "column " + std::string(wanted_[c]) + " is missing from the header");
+}
+
+bool CsvTable::next_row() {
+  if (!next_line()) return false;
+  split();
+  if (fields_.size() != columns_)
+    refuse(1, std::to_string(fields_.size()) + " fields, but the header has "
+                  + std::to_string(columns_));
+  return true;
+}
+
+double CsvTable::value(std::size_t column) const {
+  if (!has(column)) return 0;
+  const auto& [text, start] = fields_[position_[column]];
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.begin(), text.end(), value);
+  const char* why = nullptr;
+  if (error == std::errc::result_out_of_range) why = "too large or too small";
+  else if (error != std::errc() || end != text.end()) why = "must be a number";
+  else if (!std::isfinite(value)) why = "must be finite";
+  if (why)
+    refuse(start, std::string(wanted_[column]) + " = \"" + std::string(text) + "\": " + why);
+  return value;
+}
+
+std::size_t CsvTable::start(std::size_t column) const {
+  return has(column) ? fields_[position_[column]].start : 0;
+}
+
+void CsvTable::refuse(std::size_t start, const std::string& why) const {
+  throw InputError(name_ + ":" + std::to_string(line_number_) + ":" + std::to_string(start) + ": "
+                   + why);
+}
+
+bool CsvTable::next_line() {
+  while (std::getline(in_, line_)) {
+    ++line_number_;
+    if (line_number_ == 1 && line_.starts_with("\xef\xbb\xbf")) line_.erase(0, 3); // UTF-8 mark
+    if (line_.ends_with('\r')) line_.pop_back();
+    if (line_.find_first_not_of(" \t") != std::string::npos && line_[0] != '#') return true;
+  }
+  return false;
+}
+
+void CsvTable::split() {
+  fields_.clear();
+  const std::string_view line = line_;
+  for (std::size_t begin = 0; begin <= line.size();) {
+    const std::size_t end = std::min(line.find(',', begin), line.size());
+    std::size_t first = begin, last = end;
+    while (first < last && (line[first] == ' ' || line[first] == '\t')) ++first;
+    while (last > first && (line[last - 1] == ' ' || line[last - 1] == '\t')) --last;
+    fields_.push_back({line.substr(first, last - first), first + 1});
+    begin = end + 1;
+  }
+}
+
+} // namespace ehdjet
