@@ -1,0 +1,65 @@
+#pragma once
+
+#include "ehdjet/jet/jet_columns.hpp"
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace ehdjet {
+
+/// A bead that has reached the collector while it is still part of the chain (model 5).
+struct LandedBead {
+  std::size_t bead = 0; ///< index in the chain
+  double time = 0;      ///< of its landing [s]
+  double radius = 0;    ///< of its link at its landing [m]
+};
+
+/// The jet: an ordered chain of beads. Bead 0 is the nozzle (or the first bead of a given
+/// chain), bead n = beads() - 1 the leading bead. Bead k owns link k, which joins it to its
+/// upstream neighbour: its stress, volume, mass and charge (model 1).
+///
+/// shapes : mass, charge, volume (beads); y = [x|y|z|vx|vy|vz|stress?] (6 or 7 times beads)
+/// units  : SI
+/// While `has_embryo`, bead 1 is an embryo: it lies on the segment from bead 0 to bead 2,
+/// which are neighbours for every local force (model 4.1).
+struct JetState {
+  double time = 0;                    ///< [s]
+  std::vector<double> y;              ///< what the integrator advances
+  std::vector<double> mass;           ///< [kg]
+  std::vector<double> charge;         ///< [C], the full charge also for an embryo
+  std::vector<double> volume;         ///< [m^3]
+  bool has_embryo = false;
+  std::vector<LandedBead> landed;     ///< still in the chain, ascending bead index
+
+  [[nodiscard]] std::size_t beads() const { return mass.size(); }
+  [[nodiscard]] std::size_t links() const { return beads() - 1; }
+  /// First bead below bead 0 that takes part in local forces: 2 behind an embryo, else 1.
+  [[nodiscard]] std::size_t first() const { return has_embryo ? 2 : 1; }
+  [[nodiscard]] bool is_landed(std::size_t bead) const;
+
+  [[nodiscard]] JetColumns<double> columns() { return {y, beads()}; }
+  [[nodiscard]] JetColumns<const double> columns() const { return {y, beads()}; }
+};
+
+/// Properties of one bead, in or out of a chain. SI units.
+struct Bead {
+  Vec3 position = Vec3::Zero(), velocity = Vec3::Zero();
+  double stress = 0, volume = 0, mass = 0, charge = 0;
+};
+
+/// Inserts a bead so that it gets index `at`; later beads (and their landing records) move up.
+void insert_bead(JetState& jet, std::size_t at, const Bead& bead);
+
+/// Removes the leading bead.
+void remove_leading_bead(JetState& jet);
+
+[[nodiscard]] Bead bead_at(const JetState& jet, std::size_t bead);
+
+/// l_k = |r_k - r_(k-1)|, where the upstream neighbour of the bead behind an embryo is bead 0 [m].
+[[nodiscard]] double link_length(const JetState& jet, std::size_t bead);
+
+/// a_k = sqrt(V_k / (pi l_k))                                            (model 1) [m]
+[[nodiscard]] double link_radius(double volume, double length);
+
+} // namespace ehdjet

@@ -1,0 +1,44 @@
+#pragma once
+
+#include "ehdjet/core/compensated_sum.hpp"
+#include "ehdjet/jet/jet_state.hpp"
+
+#include <cstdint>
+#include <limits>
+
+namespace ehdjet {
+
+/// What has entered and left the chain since t = 0. The beads of the start count as inserted;
+/// the nozzle bead does not. An embryo counts from its creation (model 4.1).
+struct Ledger {
+  std::uint64_t inserted_beads = 0, removed_beads = 0;
+  CompensatedSum inserted_mass, removed_mass;     ///< [kg]
+  CompensatedSum inserted_charge, removed_charge; ///< [C]
+  CompensatedSum inserted_volume, removed_volume; ///< [m^3]
+  double release_speed = 0;    ///< speed given to the last released bead [m/s]
+  double impact_speed = 0;     ///< of the last landed bead at its landing [m/s]
+  double collector_radius = 0; ///< of the link of the last landed bead at its landing [m]
+};
+
+/// A bead that has left the chain: one element of the deposited fibre (model 5).
+struct DepositedBead {
+  double time = 0;           ///< of its landing [s]
+  double removal_time = 0;   ///< when it left the chain [s]
+  Bead bead;                 ///< position on the collector, velocity and stress at landing
+  double landing_radius = 0; ///< of its link at its landing [m]
+  double radius = 0;         ///< of its link when it left the chain [m]
+};
+
+/// Cost of the run so far.
+struct RunStatistics {
+  std::uint64_t evaluations = 0; ///< of the right-hand side
+  std::uint64_t steps = 0;       ///< accepted
+  std::uint64_t rejected = 0;    ///< attempts
+  std::uint64_t insertions = 0, releases = 0, landings = 0;
+  std::uint64_t coincident_pairs = 0; ///< pairs of beads at zero distance that were skipped
+  double shortest_step = std::numeric_limits<double>::infinity(); ///< [s]
+  double longest_step = 0;                                        ///< [s]
+  double wall_time = 0;                                           ///< [s]
+};
+
+} // namespace ehdjet

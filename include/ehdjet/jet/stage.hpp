@@ -1,0 +1,39 @@
+#pragma once
+
+#include "ehdjet/jet/jet_columns.hpp"
+#include "ehdjet/jet/jet_state.hpp"
+#include "ehdjet/jet/links.hpp"
+
+#include <cstddef>
+#include <span>
+
+namespace ehdjet {
+
+/// What a force term may look at during one evaluation of the right-hand side.
+/// Derived quantities are pulled: what no term asks for is never computed.
+class Stage {
+public:
+  double time = 0;                  ///< [s]
+  JetColumns<const double> columns; ///< positions, velocities, stresses at this stage
+  std::span<const double> mass;     ///< [kg]
+  std::span<const double> charge;   ///< [C], an embryo's as it acts at this stage
+  std::span<const double> volume;   ///< [m^3]
+  std::size_t first = 1;            ///< first bead below bead 0 with local forces
+  std::span<const LandedBead> landed;
+
+  /// Call after the positions have changed.
+  void invalidate() { links_ready_ = false; }
+
+  [[nodiscard]] std::size_t beads() const { return mass.size(); }
+  [[nodiscard]] const Links& links() const {
+    if (!links_ready_) links_.compute(columns.position(), first);
+    links_ready_ = true;
+    return links_;
+  }
+
+private:
+  mutable Links links_; // reused: no allocation while the number of beads stays
+  mutable bool links_ready_ = false;
+};
+
+} // namespace ehdjet
