@@ -1,0 +1,54 @@
+#pragma once
+
+#include "ehdjet/integrators/ode_system.hpp"
+
+#include <cstddef>
+#include <span>
+#include <string_view>
+#include <vector>
+
+namespace ehdjet {
+
+/// What one attempted step has come to. A step that is too inaccurate is an outcome, not an error.
+struct StepOutcome {
+  /// Estimated error over the allowed one; 0 for a method without estimate. Accept if <= 1,
+  /// which a NaN is not.
+  double error = 0;
+};
+
+/// Advances a flat vector one step at a time; knows nothing of jets.
+///
+/// A step is attempted, may be read at any instant inside (dense output), and is then either
+/// committed or attempted again from the same state with another h.
+class Integrator {
+public:
+  virtual ~Integrator() = default;
+
+  [[nodiscard]] virtual std::string_view name() const = 0;
+  [[nodiscard]] virtual int order() const = 0;
+  /// The error estimate falls with h to this power; 0 if the method has none.
+  [[nodiscard]] virtual int error_order() const = 0;
+
+  /// Tries y(t) -> y(t + h). `y` must stay where it is until the step is committed.
+  virtual StepOutcome attempt(OdeSystem& system, double t, double h, std::span<double> y) = 0;
+  /// The state at t + h of the last attempt.
+  [[nodiscard]] virtual std::span<const double> end_state() const = 0;
+  /// Component where the last attempt's error was largest or not a number.
+  [[nodiscard]] virtual std::size_t worst_component() const = 0;
+
+  /// Must be called once before `dense_output` of an attempt: evaluates what that still needs.
+  virtual void prepare_dense_output(OdeSystem& system) = 0;
+  /// Components [first, first + out.size()) at t + theta h, 0 <= theta <= 1.
+  virtual void dense_output(double theta, std::size_t first, std::span<double> out) const = 0;
+
+  /// Makes the end of the last attempt the state: swaps it into `y`.
+  virtual void commit(std::vector<double>& y) = 0;
+  /// Forget what is known about f(t, y). Call after anything but `commit` has changed y.
+  virtual void restart() = 0;
+
+  /// A first step that changes no component by more than a hundredth of its error scale's size
+  /// (after Hairer, Norsett & Wanner, II.4).
+  virtual double initial_step(OdeSystem& system, double t, std::span<double> y) = 0;
+};
+
+} // namespace ehdjet

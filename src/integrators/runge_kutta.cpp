@@ -1,0 +1,178 @@
+#include "ehdjet/integrators/runge_kutta.hpp"
+
+#include "ehdjet/core/error.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+namespace ehdjet {
+namespace {
+
+// A row of a tableau without its zeros, for sums over at most 16 vectors.
+struct WeightedVectors {
+  std::array<const double*, 16> vector{};
+  std::array<double, 16> weight{};
+  std::size_t count = 0;
+
+  void add(const double* v, double w) {
+    if (w == 0) return;
+    vector[count] = v, weight[count] = w, ++count;
+  }
+};
+
+bool is_finite(std::span<const double> y) {
+  double sum = 0;
+#pragma omp simd reduction(+ : sum)
+  for (std::size_t i = 0; i < y.size(); ++i) sum += 0 * y[i];
+  return sum == 0;
+}
+
+// out = base + sum_j w_j v_j, two vectors a pass so that memory is not read once per vector.
+void combine(const double* base, const WeightedVectors& sum, double* out, std::size_t n) {
+  std::size_t j = 0;
+  const double* from = base;
+  if (sum.count == 0 && out != base) std::copy_n(base, n, out);
+  for (; j + 4 <= sum.count; j += 4, from = out) {
+    const double *p = sum.vector[j], *q = sum.vector[j + 1], *r = sum.vector[j + 2],
+                 *s = sum.vector[j + 3];
+    const double a = sum.weight[j], b = sum.weight[j + 1], c = sum.weight[j + 2],
+                 d = sum.weight[j + 3];
+#pragma omp simd
+    for (std::size_t i = 0; i < n; ++i)
+      out[i] = from[i] + ((a * p[i] + b * q[i]) + (c * r[i] + d * s[i]));
+  }
+  for (; j + 2 <= sum.count; j += 2, from = out) {
+    const double *p = sum.vector[j], *q = sum.vector[j + 1];
+    const double a = sum.weight[j], b = sum.weight[j + 1];
+#pragma omp simd
+    for (std::size_t i = 0; i < n; ++i) out[i] = from[i] + (a * p[i] + b * q[i]);
+  }
+  if (j < sum.count) {
+    const double* p = sum.vector[j];
+    const double a = sum.weight[j];
+#pragma omp simd
+    for (std::size_t i = 0; i < n; ++i) out[i] = from[i] + a * p[i];
+  }
+}
+
+} // namespace
+
+RungeKutta::RungeKutta(const ButcherTableau& method, ErrorScale scale)
+    : method_(&method)
+    , scale_(std::move(scale))
+    , k_(method.stages.size() + 1 + method.extra.size()) {
+  EHDJET_EXPECTS(k_.size() <= WeightedVectors{}.vector.size());
+  for (const auto& e : method.error) error_needs_end_ |= e.size() > method.stages.size();
+}
+
+void RungeKutta::resize(std::size_t n) {
+  if (y1_.size() == n) return;
+  for (auto& k : k_) k.resize(n);
+  stage_.resize(n), y1_.resize(n);
+  if (method_->error_order > 0) error_.resize(n);
+  restart();
+}
+
+void RungeKutta::evaluate_stage(OdeSystem& system, std::size_t k, double c,
+                                const std::vector<double>& a) {
+  WeightedVectors sum;
+  for (std::size_t j = 0; j < a.size(); ++j) sum.add(k_[j].data(), h_ * a[j]);
+  combine(y0_.data(), sum, stage_.data(), stage_.size());
+  system.evaluate(t_ + c * h_, stage_, k_[k]);
+}
+
+void RungeKutta::evaluate_end(OdeSystem& system) {
+  if (end_known_) return;
+  system.evaluate(t_ + h_, y1_, k_[method_->stages.size()]);
+  end_known_ = true;
+}
+
+StepOutcome RungeKutta::attempt(OdeSystem& system, double t, double h, std::span<double> y) {
+  resize(y.size());
+  y0_ = y, t_ = t, h_ = h;
+  end_known_ = extra_known_ = false;
+  if (!first_known_) system.evaluate(t, y, k_[0]);
+  first_known_ = true;
+  const auto& stages = method_->stages;
+  for (std::size_t i = 1; i < stages.size(); ++i)
+    evaluate_stage(system, i, stages[i].c, stages[i].a);
+
+  WeightedVectors sum;
+  for (std::size_t j = 0; j < method_->b.size(); ++j) sum.add(k_[j].data(), h * method_->b[j]);
+  combine(y0_.data(), sum, y1_.data(), y1_.size());
+  if (method_->error_order == 0) return {.error = is_finite(y1_) ? 0.0 : std::nan("")};
+  if (error_needs_end_) evaluate_end(system);
+  return {estimated_error()};
+}
+
+double RungeKutta::estimated_error() {
+  std::array<double, 2> norms{};
+  for (std::size_t e = method_->error.size(); e-- > 0;) { // the first one last: kept in error_
+    WeightedVectors sum;
+    for (std::size_t j = 0; j < method_->error[e].size(); ++j)
+      sum.add(k_[j].data(), h_ * method_->error[e][j]);
+    std::ranges::fill(error_, 0.0);
+    combine(error_.data(), sum, error_.data(), error_.size());
+    norms[e] = scale_.norm(error_, y0_, y1_);
+  }
+  if (method_->error.size() == 1 || norms[0] == 0) return norms[0];
+  return norms[0] * norms[0] / std::sqrt(norms[0] * norms[0] + 0.01 * norms[1] * norms[1]);
+}
+
+std::size_t RungeKutta::worst_component() const {
+  return error_.empty() ? 0 : scale_.worst(error_, y0_, y1_);
+}
+
+void RungeKutta::prepare_dense_output(OdeSystem& system) {
+  evaluate_end(system);
+  if (extra_known_) return;
+  for (std::size_t i = 0; i < method_->extra.size(); ++i)
+    evaluate_stage(system, method_->stages.size() + 1 + i, method_->extra[i].c,
+                   method_->extra[i].a);
+  extra_known_ = true;
+}
+
+// With D = y1 - y0, x = theta, u = 1 - theta (Hairer, Norsett & Wanner, II.6 and II.10):
+//
+//     y(x) = y0 + x (D + u (F1 + x (F2 + u (F3 + x (F4 + u (F5 + x F6))))))
+//     F1 = h k_0 - D,   F2 = 2 D - h (k_0 + k_s),   F_(3+r) = h sum_i dense[r][i] k_i
+//
+// The first line up to F2 is the cubic Hermite polynomial, which every method has.
+void RungeKutta::dense_output(double theta, std::size_t first, std::span<double> out) const {
+  EHDJET_EXPECTS(end_known_ && (extra_known_ || method_->extra.empty()));
+  const double x = theta, u = 1 - theta;
+  const std::size_t end = method_->stages.size();
+  std::array<double, 16> weight{};
+  double factor = x * u * x; // of F2, then of F3, F4, ...
+  weight[0] = h_ * (x * u - factor);
+  weight[end] = -h_ * factor;
+  const double difference = x - x * u + 2 * factor;
+  for (std::size_t r = 0; r < method_->dense.size(); ++r) {
+    factor *= r % 2 == 0 ? u : x;
+    for (std::size_t i = 0; i < method_->dense[r].size(); ++i)
+      weight[i] += h_ * factor * method_->dense[r][i];
+  }
+  WeightedVectors sum;
+  for (std::size_t i = 0; i < k_.size(); ++i) sum.add(k_[i].data() + first, weight[i]);
+  for (std::size_t i = 0; i < out.size(); ++i)
+    out[i] = y0_[first + i] + difference * (y1_[first + i] - y0_[first + i]);
+  combine(out.data(), sum, out.data(), out.size());
+}
+
+void RungeKutta::commit(std::vector<double>& y) {
+  y.swap(y1_);
+  if (end_known_) k_.front().swap(k_[method_->stages.size()]);
+  first_known_ = end_known_;
+}
+
+double RungeKutta::initial_step(OdeSystem& system, double t, std::span<double> y) {
+  resize(y.size());
+  system.evaluate(t, y, k_[0]);
+  first_known_ = true;
+  const double rate = scale_.norm(k_[0], y, y) * scale_.rtol; // relative change per second
+  return rate > 0 ? 0.01 / rate : 0;
+}
+
+} // namespace ehdjet
