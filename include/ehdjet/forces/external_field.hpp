@@ -1,0 +1,21 @@
+#pragma once
+
+#include "ehdjet/forces/force_term.hpp"
+
+namespace ehdjet {
+
+/// Uniform electric field between nozzle and collector.
+///
+///     F_k = q_k (Phi0/h) x                                              (model 2)
+class ExternalField final : public ForceTerm {
+public:
+  explicit ExternalField(double strength) // [V/m]
+      : strength_(strength) {}
+  void add_force(const Stage& stage, Vec3View force) override;
+  [[nodiscard]] std::string_view name() const override { return "external field"; }
+
+private:
+  double strength_;
+};
+
+} // namespace ehdjet

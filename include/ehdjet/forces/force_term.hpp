@@ -1,0 +1,33 @@
+#pragma once
+
+#include "ehdjet/core/columns.hpp"
+#include "ehdjet/jet/stage.hpp"
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+namespace ehdjet {
+
+/// One additive contribution to the equations of motion (model 2). A term that a scene does not
+/// name is never constructed; there is no null term and no "enabled" flag. One virtual call per
+/// term and evaluation: the loop over beads is inside the term.
+class ForceTerm {
+public:
+  virtual ~ForceTerm() = default;
+  /// force (beads) += ... [N]. Entries of beads that do not move (nozzle, embryo, landed) may
+  /// hold anything: their rates are set to zero afterwards.
+  virtual void add_force(const Stage& stage, Vec3View force) = 0;
+  [[nodiscard]] virtual std::string_view name() const = 0;
+  /// Pairs of beads at zero distance that were skipped so far, all evaluations together.
+  [[nodiscard]] virtual std::uint64_t coincident_pairs() const { return 0; }
+};
+
+/// A force term with an internal variable per link, integrated with the jet.
+class Rheology : public ForceTerm {
+public:
+  /// rate (beads) = d sigma/dt [Pa/s]
+  virtual void stress_rate(const Stage& stage, std::span<double> rate) = 0;
+};
+
+} // namespace ehdjet

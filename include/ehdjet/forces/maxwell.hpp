@@ -1,0 +1,30 @@
+#pragma once
+
+#include "ehdjet/forces/force_term.hpp"
+
+#include <vector>
+
+namespace ehdjet {
+
+/// Maxwell fluid: one axial stress per link, elastic at short and viscous at long times.
+///
+///     d sigma_k/dt = (G/l_k) (v_k - v_(k-1)).t_k - (G/mu) sigma_k       (model 2)
+///     F_k = - pi a_k^2 sigma_k t_k + pi a_(k+1)^2 sigma_(k+1) t_(k+1),  pi a_k^2 = V_k/l_k
+///
+/// units  : G [Pa], mu [Pa s], sigma [Pa]
+/// laws   : internal forces sum to zero; the rate vanishes under rigid motion
+/// A landed bead keeps its stress, and counts as at rest for the link below it (model 5).
+/// source : Reneker, Yarin, Fong & Koombhongse, J. Appl. Phys. 87 (2000) 4531
+class Maxwell final : public Rheology {
+public:
+  Maxwell(double elastic_modulus, double viscosity); ///< both > 0
+  void add_force(const Stage& stage, Vec3View force) override;
+  void stress_rate(const Stage& stage, std::span<double> rate) override;
+  [[nodiscard]] std::string_view name() const override { return "viscoelasticity"; }
+
+private:
+  double elastic_modulus_, relaxation_rate_;
+  std::vector<double> tension_per_length_; // V sigma / l^2 [N/m], zero beyond both ends
+};
+
+} // namespace ehdjet

@@ -1,0 +1,51 @@
+#pragma once
+
+#include "ehdjet/forces/force_term.hpp"
+
+#include <vector>
+
+namespace ehdjet {
+
+/// Curvature vector at a bead with neighbours at u = r_(k-1) - r_k and w = r_(k+1) - r_k: 1/R of
+/// the circle through the three beads, towards its centre.
+///
+///     K = 2 (|u|^2 w - |w|^2 u) x p / (|u|^2 |w|^2 |u-w|^2),   p = u x w      (model 2) [1/m]
+///
+/// laws   : exactly 0 for collinear beads, finite when the chain folds back on itself
+Vec3 curvature_vector(const Vec3& u, const Vec3& w);
+
+/// The paper's surface tension, on beads with a link on either side.
+///
+///     F_k = alpha pi ((a_k + a_(k+1))/2)^2 K_k                          (model 2)
+///
+/// laws   : depends on the mesh (it acts like a line tension pi a^2 alpha / l) and does not sum
+///          to zero; kept because published results rest on it
+/// source : Lauricella et al., J. Comput. Sci. (2016)
+class BendingSurfaceTension final : public ForceTerm {
+public:
+  explicit BendingSurfaceTension(double coefficient) // alpha [N/m]
+      : coefficient_(coefficient) {}
+  void add_force(const Stage& stage, Vec3View force) override;
+  [[nodiscard]] std::string_view name() const override { return "surface tension (paper)"; }
+
+private:
+  double coefficient_;
+  std::vector<double> radius_;
+};
+
+/// Surface tension of a slender thread: a tension pi a alpha along every link (model 2).
+///
+/// laws   : internal forces sum to zero; independent of the mesh
+class LineSurfaceTension final : public ForceTerm {
+public:
+  explicit LineSurfaceTension(double coefficient) // alpha [N/m]
+      : coefficient_(coefficient) {}
+  void add_force(const Stage& stage, Vec3View force) override;
+  [[nodiscard]] std::string_view name() const override { return "surface tension (line)"; }
+
+private:
+  double coefficient_;
+  std::vector<double> tension_per_length_;
+};
+
+} // namespace ehdjet

@@ -1,0 +1,120 @@
+#include "ehdjet/dynamics/jet_dynamics.hpp"
+
+#include "ehdjet/core/error.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace ehdjet {
+
+void JetDynamics::set_rheology(std::unique_ptr<Rheology> rheology) {
+  rheology_ = rheology.get();
+  terms_.push_back(std::move(rheology));
+}
+
+void JetDynamics::bind(const JetState& jet) {
+  mass_ = jet.mass, volume_ = jet.volume, charge_ = jet.charge, landed_ = jet.landed;
+  has_embryo_ = jet.has_embryo;
+  if (has_embryo_) embryo_charge_ = jet.charge[1];
+  inverse_mass_.resize(mass_.size());
+  std::ranges::transform(mass_, inverse_mass_.begin(), [](double m) { return 1 / m; });
+
+  held_.clear();
+  if (nozzle_ || ends_.first) held_.push_back(0);
+  if (has_embryo_) held_.push_back(1);
+  if (ends_.last) held_.push_back(jet.links());
+  for (const LandedBead& b : landed_) held_.push_back(b.bead);
+
+  stage_.mass = mass_, stage_.charge = charge_, stage_.volume = volume_;
+  stage_.first = jet.first(), stage_.landed = landed_;
+}
+
+void JetDynamics::prescribe(double t, std::span<double> y) const {
+  if (!nozzle_) return;
+  const JetColumns<double> jet{y, mass_.size()};
+  const Vec3 nozzle = nozzle_->nozzle.position(t);
+  jet.position().set(0, nozzle);
+  jet.velocity().set(0, nozzle_->nozzle.velocity(t));
+  if (has_embryo_)
+    jet.position().set(1, nozzle_->embryo.position(nozzle, jet.position()[2]));
+}
+
+void JetDynamics::set_stage(double t, std::span<double> y) {
+  prescribe(t, y);
+  const JetColumns<double> jet{y, mass_.size()};
+  stage_.time = t, stage_.columns = jet;
+  stage_.invalidate();
+  if (has_embryo_) {
+    const double distance = (jet.position()[2] - jet.position()[0]).norm();
+    charge_[1] = embryo_charge_ * nozzle_->embryo.charge_fraction(distance);
+  }
+}
+
+void JetDynamics::evaluate(double t, std::span<double> y, std::span<double> rate) {
+  EHDJET_EXPECTS(y.size() == rate.size() && !mass_.empty());
+  ++evaluations_;
+  set_stage(t, y);
+  const std::size_t n = mass_.size();
+  const JetColumns<double> rates{rate, n};
+
+  const Vec3View force = rates.velocity(); // summed in place, then divided by the mass
+  const std::span<double> forces = rate.subspan(3 * n, 3 * n);
+  std::ranges::fill(forces, 0.0);
+  for (const auto& term : terms_) term->add_force(stage_, force);
+  if (rheology_) rheology_->stress_rate(stage_, rates.stress());
+
+  std::ranges::copy(y.subspan(3 * n, 3 * n), rate.begin()); // dr/dt = v
+  const double* w = inverse_mass_.data();
+  for (double* f : {force.x.data(), force.y.data(), force.z.data()}) {
+#pragma omp simd
+    for (std::size_t k = 0; k < n; ++k) f[k] *= w[k];
+  }
+  const std::size_t columns = rate.size() / n;
+  for (const std::size_t k : held_)
+    for (std::size_t c = 0; c < columns; ++c) rate[c * n + k] = 0;
+}
+
+std::uint64_t JetDynamics::coincident_pairs() const {
+  std::uint64_t pairs = 0;
+  for (const auto& term : terms_) pairs += term->coincident_pairs();
+  return pairs;
+}
+
+std::string JetDynamics::diagnosis(double t, std::span<const double> y, std::size_t bead) {
+  const std::size_t n = mass_.size();
+  for (std::size_t i = 0; i < y.size(); ++i)
+    if (!std::isfinite(y[i])) return fmt::format("bead {}: its state is not a number", i % n);
+
+  std::vector<double> state(y.begin(), y.end()), buffer(3 * n);
+  const std::span<double> b(buffer);
+  const Vec3View force{b.subspan(0, n), b.subspan(n, n), b.subspan(2 * n, n)};
+  const auto moves = [&](std::size_t k) { return std::ranges::find(held_, k) == held_.end(); };
+  set_stage(t, state);
+  std::string strongest = "no force";
+  double largest = 0;
+  for (const auto& term : terms_) {
+    std::ranges::fill(buffer, 0.0);
+    term->add_force(stage_, force);
+    for (std::size_t k = 0; k < n; ++k)
+      if (moves(k) && !force[k].allFinite())
+        return fmt::format("bead {}: the force of {} is not a number", k, term->name());
+    if (force[bead].norm() > largest) {
+      largest = force[bead].norm();
+      strongest = fmt::format("the strongest force there is {} ({:.3g} N, {:.3g} m/s^2)",
+                              term->name(), largest, largest * inverse_mass_[bead]);
+    }
+  }
+  if (rheology_) {
+    const std::span<double> rate = b.subspan(0, n);
+    rheology_->stress_rate(stage_, rate);
+    for (std::size_t k = 0; k < n; ++k)
+      if (moves(k) && !std::isfinite(rate[k]))
+        return fmt::format("bead {}: the stress rate of {} is not a number", k, rheology_->name());
+  }
+  return fmt::format("bead {}: {}", bead, strongest);
+}
+
+} // namespace ehdjet
