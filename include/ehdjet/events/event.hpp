@@ -1,0 +1,46 @@
+#pragma once
+
+#include "ehdjet/events/dense_step.hpp"
+#include "ehdjet/jet/ledger.hpp"
+
+#include <optional>
+#include <string_view>
+#include <vector>
+
+namespace ehdjet {
+
+/// What an event may change.
+struct EventContext {
+  JetState& jet; ///< at the time of the event, prescribed beads in their places
+  Ledger& ledger;
+  RunStatistics& statistics;
+  std::vector<DepositedBead>& deposited; ///< receives beads that leave the chain
+};
+
+/// Something that happens to the chain at the root of a continuous function of the state
+/// (model 4 and 5), located inside a step on the dense output.
+class Event {
+public:
+  virtual ~Event() = default;
+  [[nodiscard]] virtual std::string_view name() const = 0;
+
+  /// Whether the state calls for the event now: at the end of a step (events = "step-end"), or
+  /// right after another event at the same instant.
+  [[nodiscard]] virtual bool due(const JetState& jet) const = 0;
+
+  /// First theta in (0, 1] at which the event happens, if it does.
+  [[nodiscard]] virtual std::optional<double> locate(const DenseStep& step) = 0;
+
+  /// When the event may be expected, from the step just made: theta > 1, a guess for the choice
+  /// of the next step size only.
+  [[nodiscard]] virtual std::optional<double> predict(const DenseStep& step) const = 0;
+
+  /// Changes the chain. Called at a located time or when due.
+  virtual void apply(EventContext& context) = 0;
+
+  /// The motion right after the event has another time scale than before it: the next step size
+  /// is the one that suited after the last event of this kind, not the last step's proposal.
+  [[nodiscard]] virtual bool restarts_motion() const { return false; }
+};
+
+} // namespace ehdjet

@@ -1,0 +1,93 @@
+#pragma once
+
+#include "ehdjet/core/compensated_sum.hpp"
+#include "ehdjet/dynamics/jet_dynamics.hpp"
+#include "ehdjet/events/event.hpp"
+#include "ehdjet/integrators/integrator.hpp"
+#include "ehdjet/integrators/step_size_control.hpp"
+#include "ehdjet/simulation/observer.hpp"
+
+#include <functional>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace ehdjet {
+
+/// How long a step may be.
+struct StepLimits {
+  std::optional<double> fixed;   ///< dt of every step, for methods without error estimate too [s]
+  std::optional<double> initial; ///< first attempt [s]
+  double longest = std::numeric_limits<double>::infinity(); ///< [s]
+  double shortest = 1e-15; ///< below this the run stops [s]
+};
+
+/// A jet, what moves it, what happens to it and who watches.
+///
+/// One pass of the loop: choose h, attempt, and once the error is small enough find the first
+/// event inside the step, show the part before it to the observers, advance to it, apply it.
+/// Nothing but events changes the chain; nothing but the loop changes the time.
+class Simulation {
+public:
+  Simulation(JetState jet, std::unique_ptr<JetDynamics> dynamics,
+             std::unique_ptr<Integrator> integrator, StepLimits limits);
+
+  /// Events at the same instant are applied in the order in which they were added.
+  void add(std::unique_ptr<Event> event);
+  void add(std::unique_ptr<Observer> observer) { observers_.push_back(std::move(observer)); }
+  /// Apply events at the end of the step that contains them, as the paper did: first order in
+  /// the step size, whatever the method.
+  void snap_events_to_step_ends() { events_located_ = false; }
+
+  /// Called after every step; may throw to end the run.
+  using StepHook = std::function<void(const Simulation&)>;
+  void after_each_step(StepHook hook) { hook_ = std::move(hook); }
+
+  /// Runs to `end_time` [s]; observers see times up to and including it.
+  /// errors : RunError with time, bead and term when the step size collapses or a state is not
+  ///          a number; what observers were shown until then stands
+  void run_until(double end_time);
+
+  [[nodiscard]] const JetState& jet() const { return jet_; }
+  [[nodiscard]] const Ledger& ledger() const { return ledger_; }
+  [[nodiscard]] const RunStatistics& statistics() const { return statistics_; }
+  [[nodiscard]] const JetDynamics& dynamics() const { return *dynamics_; }
+
+private:
+  struct FoundEvent {
+    std::size_t index;
+    double theta;
+  };
+
+  double choose_step();
+  double attempt_step(double h);
+  std::optional<FoundEvent> first_event(const DenseStep& step);
+  [[nodiscard]] double expected_time(const DenseStep& step) const;
+  void show_until(const DenseStep& step, double end);
+  void stop_at(const DenseStep& step, double theta);
+  void apply_events(std::size_t located);
+  [[noreturn]] void fail(double h, const char* why);
+
+  JetState jet_;
+  std::unique_ptr<JetDynamics> dynamics_;
+  std::unique_ptr<Integrator> integrator_;
+  StepLimits limits_;
+  StepSizeControl control_;
+  std::vector<std::unique_ptr<Event>> events_;
+  std::vector<std::unique_ptr<Observer>> observers_;
+  StepHook hook_;
+  bool events_located_ = true;
+
+  Ledger ledger_;
+  RunStatistics statistics_;
+  CompensatedSum time_;
+  double step_ = 0; // what to attempt next; 0: nothing known yet [s]
+  double expected_event_ = std::numeric_limits<double>::infinity(); // [s]
+  std::vector<double> restart_step_;       // per event: a step that suits the motion after it [s]
+  std::optional<std::size_t> after_event_; // the event that the next step follows
+  std::vector<double> snapshot_;           // a state inside a step
+  std::vector<DepositedBead> deposited_;
+};
+
+} // namespace ehdjet

@@ -1,0 +1,141 @@
+#include "ehdjet/simulation/build.hpp"
+
+#include "ehdjet/coulomb/make_solver.hpp"
+#include "ehdjet/events/insertion.hpp"
+#include "ehdjet/events/landing.hpp"
+#include "ehdjet/forces/coulomb_force.hpp"
+#include "ehdjet/forces/external_field.hpp"
+#include "ehdjet/forces/gravity.hpp"
+#include "ehdjet/forces/maxwell.hpp"
+#include "ehdjet/forces/surface_tension.hpp"
+#include "ehdjet/integrators/butcher_tableau.hpp"
+#include "ehdjet/integrators/runge_kutta.hpp"
+#include "ehdjet/scene/dimensionless.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace ehdjet {
+namespace {
+
+Nozzle nozzle_of(const NozzleConfig& c) {
+  return {.fluid_velocity = c.velocity,
+          .amplitude = c.amplitude,
+          .angular_frequency = c.angular_frequency,
+          .phase = c.phase};
+}
+
+NewBead new_bead_of(const NozzleConfig& c) {
+  return NewBead::from(c.radius, c.link_length, c.density, c.charge_density);
+}
+
+// Without elasticity, or without viscosity to hold it, stress is exactly zero at all times.
+bool carries_stress(const SceneConfig& c) {
+  return c.viscoelasticity && c.viscoelasticity->elastic_modulus > 0
+         && c.viscoelasticity->viscosity > 0;
+}
+
+ErrorScale error_scale(const Scene& scene) {
+  const SceneConfig& c = scene.config;
+  double length = 0;
+  if (c.integrator.position_scale) {
+    length = *c.integrator.position_scale;
+  } else if (c.nozzle) {
+    length = c.nozzle->link_length;
+  } else {
+    const JetState jet = initial_jet(scene);
+    length = link_length(jet, 1);
+    for (std::size_t k = 2; k < jet.beads(); ++k) length = std::min(length, link_length(jet, k));
+  }
+  const double speed = c.integrator.velocity_scale;
+  ErrorScale scale{.rtol = c.integrator.rtol.value_or(1),
+                   .column_scale = {length, length, length, speed, speed, speed},
+                   .root_mean_square = c.integrator.norm == ErrorNorm::rms};
+  if (carries_stress(c))
+    scale.column_scale.push_back(
+        c.integrator.stress_scale.value_or(0.1 * c.viscoelasticity->elastic_modulus));
+  return scale;
+}
+
+JetState nozzle_jet(const NozzleConfig& c, std::size_t columns) {
+  JetState jet;
+  const NewBead born = new_bead_of(c);
+  jet.y.assign(columns, 0.0);
+  jet.mass = {born.mass}, jet.charge = {born.charge}, jet.volume = {born.volume};
+  insert_bead(jet, 1,
+              {.position = {c.link_length, 0, 0},
+               .velocity = {c.velocity, 0, 0},
+               .stress = 0,
+               .volume = born.volume,
+               .mass = born.mass,
+               .charge = born.charge});
+  return jet;
+}
+
+JetState chain_jet(const ChainBeads& beads, bool with_stress) {
+  JetState jet;
+  for (const auto* column : {&beads.x, &beads.y, &beads.z, &beads.vx, &beads.vy, &beads.vz})
+    jet.y.insert(jet.y.end(), column->begin(), column->end());
+  if (with_stress) jet.y.insert(jet.y.end(), beads.stress.begin(), beads.stress.end());
+  jet.mass = beads.mass, jet.charge = beads.charge, jet.volume = beads.volume;
+  return jet;
+}
+
+} // namespace
+
+JetState initial_jet(const Scene& scene) {
+  const bool with_stress = carries_stress(scene.config);
+  constexpr std::size_t kinematic = JetColumns<double>::kinematic_columns;
+  if (scene.config.nozzle)
+    return nozzle_jet(*scene.config.nozzle, with_stress ? kinematic + 1 : kinematic);
+  return chain_jet(scene.chain, with_stress);
+}
+
+std::unique_ptr<JetDynamics> build_dynamics(const SceneConfig& c) {
+  auto dynamics = std::make_unique<JetDynamics>();
+  if (c.nozzle)
+    dynamics->set_nozzle(nozzle_of(*c.nozzle), {.link_length = c.nozzle->link_length});
+  if (c.chain)
+    dynamics->hold({.first = c.chain->fixed == FixedEnds::first || c.chain->fixed == FixedEnds::both,
+                    .last = c.chain->fixed == FixedEnds::last || c.chain->fixed == FixedEnds::both});
+  if (c.field) dynamics->add(std::make_unique<ExternalField>(field_strength(c)));
+  if (c.gravity) dynamics->add(std::make_unique<Gravity>(c.gravity->acceleration));
+  if (c.coulomb)
+    dynamics->add(std::make_unique<CoulombForce>(make_coulomb_solver(c.coulomb->solver)));
+  if (c.surface_tension && c.surface_tension->form == SurfaceTensionForm::paper)
+    dynamics->add(std::make_unique<BendingSurfaceTension>(c.surface_tension->coefficient));
+  if (c.surface_tension && c.surface_tension->form == SurfaceTensionForm::line)
+    dynamics->add(std::make_unique<LineSurfaceTension>(c.surface_tension->coefficient));
+  if (carries_stress(c))
+    dynamics->set_rheology(std::make_unique<Maxwell>(c.viscoelasticity->elastic_modulus,
+                                                     c.viscoelasticity->viscosity));
+  return dynamics;
+}
+
+std::unique_ptr<Simulation> build_simulation(const Scene& scene) {
+  const SceneConfig& c = scene.config;
+  auto integrator = std::make_unique<RungeKutta>(butcher_tableau(c.integrator.method),
+                                                 error_scale(scene));
+  StepLimits limits{.fixed = c.integrator.step,
+                    .initial = c.integrator.initial_step,
+                    .longest = c.integrator.max_step.value_or(StepLimits{}.longest),
+                    .shortest = c.integrator.min_step};
+  auto simulation = std::make_unique<Simulation>(initial_jet(scene), build_dynamics(c),
+                                                 std::move(integrator), limits);
+  if (c.integrator.events == EventPlacement::step_end) simulation->snap_events_to_step_ends();
+
+  // The order in which events at the same instant are applied (model 5).
+  if (c.collector) simulation->add(std::make_unique<Landing>(c.collector->distance));
+  if (c.nozzle) {
+    const Embryo embryo{.link_length = c.nozzle->link_length};
+    const auto velocity = c.nozzle->insertion_velocity == InsertionVelocity::half
+                              ? ReleaseVelocity::half
+                              : ReleaseVelocity::nozzle;
+    simulation->add(std::make_unique<Release>(nozzle_of(*c.nozzle), embryo, velocity));
+    simulation->add(
+        std::make_unique<Insertion>(nozzle_of(*c.nozzle), embryo, new_bead_of(*c.nozzle)));
+  }
+  return simulation;
+}
+
+} // namespace ehdjet

@@ -1,0 +1,213 @@
+#include "ehdjet/simulation/simulation.hpp"
+
+#include "ehdjet/core/error.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <string_view>
+#include <utility>
+
+namespace ehdjet {
+namespace {
+
+constexpr double never = std::numeric_limits<double>::infinity();
+
+// An expected event lies inside the step that aims at it, not just behind its end.
+constexpr double aim_beyond = 1.02;
+
+class WallClock {
+public:
+  [[nodiscard]] double seconds() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  }
+
+private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+} // namespace
+
+Simulation::Simulation(JetState jet, std::unique_ptr<JetDynamics> dynamics,
+                       std::unique_ptr<Integrator> integrator, StepLimits limits)
+    : jet_(std::move(jet))
+    , dynamics_(std::move(dynamics))
+    , integrator_(std::move(integrator))
+    , limits_(limits)
+    , control_(integrator_->error_order())
+    , time_(jet_.time) {
+  EHDJET_EXPECTS(limits_.fixed || integrator_->error_order() > 0);
+  for (std::size_t k = 1; k < jet_.beads(); ++k) {
+    ++ledger_.inserted_beads;
+    ledger_.inserted_mass += jet_.mass[k];
+    ledger_.inserted_charge += jet_.charge[k];
+    ledger_.inserted_volume += jet_.volume[k];
+  }
+  dynamics_->bind(jet_);
+  dynamics_->prescribe(jet_.time, jet_.y);
+}
+
+void Simulation::add(std::unique_ptr<Event> event) {
+  events_.push_back(std::move(event));
+  restart_step_.push_back(0);
+}
+
+void Simulation::run_until(double end_time) {
+  const WallClock clock;
+  const double wall_before = statistics_.wall_time;
+  while (jet_.time < end_time) {
+    const double to_end = end_time - jet_.time;
+    const double h = attempt_step(std::min(choose_step(), to_end));
+    const DenseStep step(jet_.time, h, jet_, *integrator_, *dynamics_);
+
+    const auto found = events_located_ ? first_event(step) : std::nullopt;
+    const double theta = found ? found->theta : 1.0;
+    const bool reached_end = !found && h == to_end; // exactly, whatever the round-off
+    const double t1 = reached_end ? end_time : step.time(theta);
+    show_until(step, t1);
+    expected_event_ = found || !events_located_ ? never : expected_time(step);
+
+    if (found) {
+      stop_at(step, theta);
+    } else {
+      integrator_->commit(jet_.y);
+    }
+    time_ += t1 - jet_.time;
+    jet_.time = time_;
+    if (reached_end) jet_.time = end_time, time_ = end_time;
+    dynamics_->prescribe(jet_.time, jet_.y);
+    apply_events(found ? found->index : events_.size());
+    statistics_.wall_time = wall_before + clock.seconds();
+    if (hook_) hook_(*this);
+  }
+  for (const auto& o : observers_)
+    while (o->next_time() <= end_time)
+      o->observe({o->next_time(), std::as_const(jet_).columns(), jet_, ledger_, statistics_});
+}
+
+double Simulation::choose_step() {
+  if (limits_.fixed) return *limits_.fixed;
+  if (step_ == 0) {
+    step_ = limits_.initial.value_or(
+        integrator_->initial_step(*dynamics_, jet_.time, jet_.y));
+    if (step_ == 0) step_ = never; // nothing moves
+  }
+  // Steps are aimed at expected events: a step that ends far behind one is mostly thrown away,
+  // and one that ends just before it leaves a remainder that costs as much as a step.
+  double h = std::min(step_, limits_.longest);
+  const double remaining = aim_beyond * (expected_event_ - jet_.time);
+  if (remaining > 0 && remaining < 2 * h) h = remaining > h ? remaining / 2 : remaining;
+  return h;
+}
+
+double Simulation::attempt_step(double h) {
+  for (;;) {
+    const StepOutcome outcome = integrator_->attempt(*dynamics_, jet_.time, h, jet_.y);
+    statistics_.evaluations = dynamics_->evaluations();
+    if (limits_.fixed) {
+      if (std::isnan(outcome.error)) fail(h, "the state is not a number after");
+      break;
+    }
+    if (outcome.error <= 1) { // false for a NaN
+      step_ = control_.after_accepted(h, outcome.error);
+      break;
+    }
+    ++statistics_.rejected;
+    const double next = control_.after_rejected(h, outcome.error);
+    // A step that no longer changes t is as good as none.
+    const double round_off = 4 * std::numeric_limits<double>::epsilon() * jet_.time;
+    if (next < std::max(limits_.shortest, round_off)) fail(h, "the step size collapsed at");
+    h = next;
+  }
+  ++statistics_.steps;
+  statistics_.shortest_step = std::min(statistics_.shortest_step, h);
+  statistics_.longest_step = std::max(statistics_.longest_step, h);
+  if (after_event_) restart_step_[*after_event_] = step_;
+  after_event_.reset();
+  return h;
+}
+
+std::optional<Simulation::FoundEvent> Simulation::first_event(const DenseStep& step) {
+  std::optional<FoundEvent> first;
+  for (std::size_t i = 0; i < events_.size(); ++i) {
+    const auto theta = events_[i]->locate(step);
+    if (theta && (!first || *theta < first->theta)) first = {i, *theta};
+  }
+  return first;
+}
+
+double Simulation::expected_time(const DenseStep& step) const {
+  double earliest = never;
+  for (const auto& e : events_)
+    if (const auto theta = e->predict(step)) earliest = std::min(earliest, step.time(*theta));
+  return earliest;
+}
+
+void Simulation::show_until(const DenseStep& step, double end) {
+  for (const auto& o : observers_) {
+    for (double t = o->next_time(); t < end; t = o->next_time()) {
+      snapshot_.resize(jet_.y.size());
+      step.state(std::clamp((t - step.t0) / step.h, 0.0, 1.0), snapshot_);
+      dynamics_->prescribe(t, snapshot_);
+      o->observe({t, {snapshot_, jet_.beads()}, jet_, ledger_, statistics_});
+    }
+  }
+}
+
+// Within an error tolerance the dense output serves. Fixed steps are for convergence studies: there
+// the state at the event is a step of the method itself, so that interpolation does not blur
+// the order.
+void Simulation::stop_at(const DenseStep& step, double theta) {
+  if (limits_.fixed && theta > 0) {
+    integrator_->attempt(*dynamics_, step.t0, theta * step.h, jet_.y);
+    integrator_->commit(jet_.y);
+  } else {
+    snapshot_.resize(jet_.y.size());
+    step.state(theta, snapshot_);
+    jet_.y.swap(snapshot_);
+  }
+  integrator_->restart();
+}
+
+void Simulation::apply_events(std::size_t located) {
+  EventContext context{jet_, ledger_, statistics_, deposited_};
+  bool any = false;
+  for (std::size_t i = 0; i < events_.size();) {
+    if (i != located && !events_[i]->due(jet_)) {
+      ++i;
+      continue;
+    }
+    events_[i]->apply(context);
+    any = true;
+    if (events_[i]->restarts_motion()) {
+      after_event_ = i;
+      if (restart_step_[i] > 0) step_ = restart_step_[i];
+    }
+    located = events_.size();
+    i = 0; // one event may bring about another at the same instant; landings come first
+  }
+  if (!any) return;
+  for (const DepositedBead& bead : deposited_)
+    for (const auto& o : observers_) o->deposit(bead);
+  deposited_.clear();
+  dynamics_->bind(jet_);
+  dynamics_->prescribe(jet_.time, jet_.y);
+  integrator_->restart();
+}
+
+void Simulation::fail(double h, const char* why) {
+  static constexpr std::array<std::string_view, 7> columns{"x",  "y",  "z",     "vx",
+                                                           "vy", "vz", "stress"};
+  const std::size_t worst = integrator_->worst_component();
+  const std::string cause =
+      dynamics_->diagnosis(jet_.time, jet_.y, worst % jet_.beads());
+  throw RunError(fmt::format("{} t = {:.9g} s (step {:.3g} s), where {} of bead {} changes too "
+                             "fast; {}",
+                             why, jet_.time, h, columns[worst / jet_.beads()],
+                             worst % jet_.beads(), cause));
+}
+
+} // namespace ehdjet
