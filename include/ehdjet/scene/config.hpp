@@ -1,0 +1,147 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+/// A scene as plain data, SI units. An absent optional is a feature that does not exist in
+/// the run: no object, no state column, no branch, no output column.
+///
+/// Units, ranges, defaults and meaning of every member stand in one place, the schema
+/// (scene/schema.hpp), which also reads, prints and documents them. Symbols are those of the
+/// model (README, "The model").
+namespace ehdjet {
+
+/// Ways a bead chain can be held at its ends (chain scenes only).
+enum class FixedEnds { none, first, last, both };
+/// Velocity that a released bead starts with (model 4.2).
+enum class InsertionVelocity { half, nozzle };
+/// Force law of the surface tension (model 2).
+enum class SurfaceTensionForm { paper, line };
+/// Where events are applied: at their root inside a step, or at the end of the step.
+enum class EventPlacement { located, step_end };
+/// Norm over the components of the scaled error estimate.
+enum class ErrorNorm { max, rms };
+
+/// The jet is born at a nozzle (model 2 and 4). Excludes `ChainConfig`.
+struct NozzleConfig {
+  double radius = 0;            ///< a0 [m]
+  double link_length = 0;       ///< l_step [m]
+  double velocity = 0;          ///< v_s [m/s]
+  double density = 0;           ///< rho [kg/m^3]
+  double charge_density = 0;    ///< rho_q [C/m^3]
+  double amplitude = 0;         ///< A [m]
+  double angular_frequency = 0; ///< omega [rad/s]
+  double phase = 0;             ///< [rad]
+  InsertionVelocity insertion_velocity = InsertionVelocity::half;
+  bool operator==(const NozzleConfig&) const = default;
+};
+
+/// The jet is a given chain of beads; nothing is inserted. Excludes `NozzleConfig`.
+struct ChainConfig {
+  std::string file; ///< CSV, or HDF5 written by a run; relative to the scene file
+  std::optional<double>
+      time; ///< frame of an HDF5 file nearest to this time [s]; default: last
+  FixedEnds fixed = FixedEnds::none;
+  bool operator==(const ChainConfig&) const = default;
+};
+
+/// Uniform external field along +x: Phi0/h, or given directly. Exactly one of the two.
+struct FieldConfig {
+  std::optional<double> potential; ///< Phi0 [V]; needs a collector
+  std::optional<double> strength;  ///< E [V/m]
+  bool operator==(const FieldConfig&) const = default;
+};
+
+struct GravityConfig {
+  double acceleration = 0; ///< g along +x [m/s^2]
+  bool operator==(const GravityConfig&) const = default;
+};
+
+struct CoulombConfig {
+  std::string solver = "direct";
+  bool operator==(const CoulombConfig&) const = default;
+};
+
+/// Maxwell fluid (model 2).
+struct ViscoelasticityConfig {
+  double elastic_modulus = 0; ///< G [Pa]
+  double viscosity = 0;       ///< mu [Pa s]
+  bool operator==(const ViscoelasticityConfig&) const = default;
+};
+
+struct SurfaceTensionConfig {
+  double coefficient = 0; ///< alpha [N/m]
+  SurfaceTensionForm form = SurfaceTensionForm::paper;
+  bool operator==(const SurfaceTensionConfig&) const = default;
+};
+
+/// Conducting plane x = distance where beads land (model 5).
+struct CollectorConfig {
+  double distance = 0; ///< h [m]
+  bool operator==(const CollectorConfig&) const = default;
+};
+
+/// Time integration (model 6). Either `rtol` (adaptive) or `step` (fixed).
+struct IntegratorConfig {
+  std::string method = "dormand-prince";
+  std::optional<double> rtol;         ///< [-]
+  std::optional<double> step;         ///< dt [s]
+  std::optional<double> initial_step; ///< adaptive only [s]
+  std::optional<double> max_step;     ///< adaptive only [s]
+  double min_step = 1e-15;            ///< below this the run stops [s]
+  /// The error of a component y is measured against rtol (scale + |y|). Defaults (model 6):
+  std::optional<double> position_scale; ///< [m], l_step (chain: shortest link)
+  double velocity_scale = 1;            ///< [m/s]
+  std::optional<double> stress_scale;   ///< [Pa], 0.1 G
+  ErrorNorm norm = ErrorNorm::max;
+  EventPlacement events = EventPlacement::located;
+  bool operator==(const IntegratorConfig&) const = default;
+};
+
+struct RunConfig {
+  double end_time = 0;                ///< [s]
+  std::optional<std::size_t> threads; ///< default: all processors
+  bool operator==(const RunConfig&) const = default;
+};
+
+/// What is written; each absent part writes nothing and costs nothing.
+struct OutputConfig {
+  std::optional<double> observables; ///< time between rows of observables [s]
+  std::optional<double> frames;      ///< time between frames of all beads [s]
+  bool deposit = false;              ///< record every bead that leaves at the collector
+  double flush = 2;                  ///< longest wall time between flushes to disk [s]
+  bool operator==(const OutputConfig&) const = default;
+};
+
+struct SceneConfig {
+  std::string title;
+  RunConfig run;
+  std::optional<NozzleConfig> nozzle;
+  std::optional<ChainConfig> chain;
+  std::optional<CollectorConfig> collector;
+  std::optional<FieldConfig> field;
+  std::optional<GravityConfig> gravity;
+  std::optional<CoulombConfig> coulomb;
+  std::optional<ViscoelasticityConfig> viscoelasticity;
+  std::optional<SurfaceTensionConfig> surface_tension;
+  IntegratorConfig integrator;
+  OutputConfig output;
+  bool operator==(const SceneConfig&) const = default;
+};
+
+/// The beads of a chain scene, from bead 0 on. All columns have the same length; stress and
+/// volume belong to the link that ends at the bead (entry 0 belongs to no link).
+struct ChainBeads {
+  std::vector<double> x, y, z;    ///< [m]
+  std::vector<double> vx, vy, vz; ///< [m/s]
+  std::vector<double> stress;     ///< [Pa]
+  std::vector<double> volume;     ///< [m^3]
+  std::vector<double> mass;       ///< [kg]
+  std::vector<double> charge;     ///< [C]
+
+  [[nodiscard]] std::size_t size() const { return x.size(); }
+};
+
+} // namespace ehdjet

@@ -1,0 +1,244 @@
+#pragma once
+
+#include "ehdjet/scene/config.hpp"
+
+#include <array>
+#include <cstddef>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <vector>
+
+/// Every table and key of a scene file, described once: name, allowed values with unit,
+/// default, meaning. Reading, printing and documenting are visitors of this description.
+///
+/// A visitor has three members:
+///
+///     required(name, value, allowed, meaning)            the scene must give this key
+///     optional(name, value, allowed, meaning, otherwise) default: the value as constructed;
+///                                                        for a std::optional: `otherwise`
+///     table(name, config, meaning)                       calls describe(*this, config); a
+///                                                        std::optional table may be absent
+///
+/// A new key is one member in config.hpp and one line here.
+namespace ehdjet {
+
+/// Numbers a key accepts, in its unit. Upper ends are far beyond any jet: they are there to
+/// catch a value in centimetres, grams or statcoulombs.
+struct Range {
+  std::string_view unit; ///< "-" for a pure number
+  double lowest = 0, highest = 0;
+  bool open = false; ///< `lowest` itself is not allowed
+
+  [[nodiscard]] bool contains(double value) const; ///< false for NaN
+  [[nodiscard]] std::string text() const;          ///< "greater than 0 and at most 0.01 m"
+};
+constexpr Range positive(std::string_view unit, double highest) {
+  return {unit, 0, highest, true};
+}
+constexpr Range non_negative(std::string_view unit, double highest) {
+  return {unit, 0, highest};
+}
+constexpr Range between(std::string_view unit, double lowest, double highest) {
+  return {unit, lowest, highest};
+}
+
+template <class Enum>
+struct Named {
+  std::string_view name;
+  Enum value;
+};
+/// Strings that stand for the values of an enumeration.
+template <class Enum, std::size_t N>
+using Choices = std::array<Named<Enum>, N>;
+
+/// Strings that are kept as strings.
+struct Words {
+  std::vector<std::string_view> names;
+};
+struct AnyText {};
+struct YesNo {};
+
+inline constexpr Choices<FixedEnds, 4> fixed_ends{{{"none", FixedEnds::none},
+                                                   {"first", FixedEnds::first},
+                                                   {"last", FixedEnds::last},
+                                                   {"both", FixedEnds::both}}};
+inline constexpr Choices<InsertionVelocity, 2> insertion_velocities{
+    {{"half", InsertionVelocity::half}, {"nozzle", InsertionVelocity::nozzle}}};
+inline constexpr Choices<SurfaceTensionForm, 2> surface_tension_forms{
+    {{"paper", SurfaceTensionForm::paper}, {"line", SurfaceTensionForm::line}}};
+inline constexpr Choices<EventPlacement, 2> event_placements{
+    {{"located", EventPlacement::located}, {"step-end", EventPlacement::step_end}}};
+inline constexpr Choices<ErrorNorm, 2> error_norms{
+    {{"max", ErrorNorm::max}, {"rms", ErrorNorm::rms}}};
+
+template <class Enum, std::size_t N>
+std::string_view name_of(Enum value, const Choices<Enum, N>& choices) {
+  for (const auto& c : choices)
+    if (c.value == value) return c.name;
+  return {};
+}
+
+[[nodiscard]] Words integration_method_names();
+[[nodiscard]] Words coulomb_solver_names();
+
+/// What an allowed-values object says of itself, for messages and the reference page.
+[[nodiscard]] std::string allowed_text(const Range& range); ///< with unit
+[[nodiscard]] std::string allowed_text(const Words& words); ///< "a" or "b"
+[[nodiscard]] std::string allowed_text(AnyText);
+[[nodiscard]] std::string allowed_text(YesNo);
+template <class Enum, std::size_t N>
+std::string allowed_text(const Choices<Enum, N>& choices) {
+  Words words;
+  for (const auto& c : choices) words.names.push_back(c.name);
+  return allowed_text(words);
+}
+
+/// A value as TOML reads it back: shortest digits that give the same bits, quoted strings.
+[[nodiscard]] std::string toml_text(double value);
+[[nodiscard]] std::string toml_text(std::string_view value);
+
+inline constexpr double longest_time = 1e6; // [s]
+
+template <class V>
+void describe(V& v, RunConfig& c) {
+  v.required("end_time", c.end_time, positive("s", longest_time), "simulated time");
+  v.optional("threads", c.threads, between("-", 1, 4096), "number of threads",
+             "all processors");
+}
+
+template <class V>
+void describe(V& v, NozzleConfig& c) {
+  v.required("radius", c.radius, positive("m", 2e-3), "jet radius at the nozzle, a0");
+  v.required("link_length", c.link_length, positive("m", 1e-2),
+             "length of a link when it leaves the nozzle, l_step; at least the radius");
+  v.required("velocity", c.velocity, non_negative("m/s", 1e3),
+             "fluid velocity at the nozzle, v_s");
+  v.required("density", c.density, between("kg/m^3", 1, 1e5), "density of the fluid, rho");
+  v.required("charge_density", c.charge_density, between("C/m^3", -1e4, 1e4),
+             "charge per volume of the fluid, rho_q");
+  v.optional("amplitude", c.amplitude, non_negative("m", 1e-2),
+             "radius of the circle on which the nozzle moves, A");
+  v.optional("angular_frequency", c.angular_frequency, between("rad/s", -1e9, 1e9),
+             "angular frequency of the nozzle, omega");
+  v.optional("phase", c.phase, between("rad", -100, 100),
+             "angle of the nozzle at t = 0, from +y towards +z");
+  v.optional(
+      "insertion_velocity", c.insertion_velocity, insertion_velocities,
+      "velocity of a released bead: half-way to the bead below it, or that of the nozzle");
+}
+
+template <class V>
+void describe(V& v, ChainConfig& c) {
+  v.required("file", c.file, AnyText{},
+             "beads: CSV, or HDF5 written by a run; relative to the scene file");
+  v.optional("time", c.time, non_negative("s", longest_time),
+             "take the frame nearest to this time (HDF5 only)", "the last frame");
+  v.optional("fixed", c.fixed, fixed_ends, "ends of the chain that do not move");
+}
+
+template <class V>
+void describe(V& v, CollectorConfig& c) {
+  v.required("distance", c.distance, positive("m", 10),
+             "distance from the nozzle, h; more than two link lengths");
+}
+
+template <class V>
+void describe(V& v, FieldConfig& c) {
+  v.optional("potential", c.potential, between("V", -1e8, 1e8),
+             "voltage between nozzle and collector, Phi0: the field is Phi0/h",
+             "`strength` is given");
+  v.optional("strength", c.strength, between("V/m", -1e8, 1e8), "field along +x, E",
+             "`potential` is given");
+}
+
+template <class V>
+void describe(V& v, GravityConfig& c) {
+  v.required("acceleration", c.acceleration, between("m/s^2", -100, 100),
+             "gravity along +x, g; on Earth 9.80665");
+}
+
+template <class V>
+void describe(V& v, CoulombConfig& c) {
+  v.optional("solver", c.solver, coulomb_solver_names(),
+             "how the mutual forces are summed");
+}
+
+template <class V>
+void describe(V& v, ViscoelasticityConfig& c) {
+  v.required("elastic_modulus", c.elastic_modulus, non_negative("Pa", 1e12),
+             "elastic modulus, G; 0: no stress at all");
+  v.required("viscosity", c.viscosity, non_negative("Pa s", 1e6),
+             "viscosity, mu; 0: no stress at all");
+}
+
+template <class V>
+void describe(V& v, SurfaceTensionConfig& c) {
+  v.required("coefficient", c.coefficient, non_negative("N/m", 5),
+             "surface tension, alpha");
+  v.optional("form", c.form, surface_tension_forms,
+             "force law: the paper's curvature force on beads, or a tension pi a alpha "
+             "along links");
+}
+
+template <class V>
+void describe(V& v, IntegratorConfig& c) {
+  v.optional("method", c.method, integration_method_names(), "Runge-Kutta method");
+  v.optional("rtol", c.rtol, between("-", 1e-14, 0.1),
+             "relative tolerance of the adaptive step; excludes `step`",
+             "1e-06 unless `step` is given");
+  v.optional("step", c.step, positive("s", longest_time),
+             "fixed time step; excludes `rtol`", "`rtol` is given");
+  v.optional("initial_step", c.initial_step, positive("s", longest_time),
+             "first step to try (adaptive only)", "estimated");
+  v.optional("max_step", c.max_step, positive("s", longest_time),
+             "longest step (adaptive only)", "no limit");
+  v.optional("min_step", c.min_step, positive("s", 1),
+             "the run stops rather than step less");
+  v.optional("position_scale", c.position_scale, positive("m", 1e3),
+             "the error of a position x is measured against rtol (position_scale + |x|)",
+             "link_length (chain: shortest link)");
+  v.optional("velocity_scale", c.velocity_scale, positive("m/s", 1e6),
+             "the same for velocities");
+  v.optional("stress_scale", c.stress_scale, positive("Pa", 1e12), "the same for stresses",
+             "0.1 elastic_modulus");
+  v.optional("norm", c.norm, error_norms, "norm over all components of the scaled error");
+  v.optional(
+      "events", c.events, event_placements,
+      "insertion and landing happen at their root inside a step, or snap to its end");
+}
+
+template <class V>
+void describe(V& v, OutputConfig& c) {
+  v.optional("observables", c.observables, positive("s", longest_time),
+             "time between rows of observables", "none are written");
+  v.optional("frames", c.frames, positive("s", longest_time),
+             "time between frames of all beads", "none are written");
+  v.optional("deposit", c.deposit, YesNo{},
+             "record every bead that leaves at the collector");
+  v.optional("flush", c.flush, positive("s", 3600),
+             "longest wall time between flushes to disk");
+}
+
+template <class V>
+void describe(V& v, SceneConfig& c) {
+  v.optional("title", c.title, AnyText{}, "one line on what this scene is");
+  v.table("run", c.run, "What is simulated.");
+  v.table(
+      "nozzle", c.nozzle,
+      "The jet is born at a nozzle at the origin. Exactly one of [nozzle] and [chain].");
+  v.table("chain", c.chain,
+          "The jet is a given chain of beads; none is inserted. Excludes [nozzle].");
+  v.table("collector", c.collector, "Conducting plane x = distance, where beads land.");
+  v.table("field", c.field, "Uniform electric field along +x, by exactly one of its keys.");
+  v.table("gravity", c.gravity, "Gravity.");
+  v.table("coulomb", c.coulomb,
+          "Mutual Coulomb force of all beads, the nozzle's included.");
+  v.table("viscoelasticity", c.viscoelasticity, "The fluid is a Maxwell fluid.");
+  v.table("surface_tension", c.surface_tension, "Surface tension.");
+  v.table("integrator", c.integrator,
+          "Integration in time, adaptive (`rtol`) or with fixed steps (`step`).");
+  v.table("output", c.output, "What is written.");
+}
+
+} // namespace ehdjet

@@ -1,0 +1,61 @@
+#pragma once
+
+#include "ehdjet/scene/read_scene.hpp"
+
+#include <complex>
+#include <cstddef>
+#include <optional>
+
+namespace ehdjet {
+
+/// One link of a uniform straight chain, which is what the rates below belong to.
+struct LinkState {
+  double length = 0;         ///< l [m]
+  double radius = 0;         ///< a [m]
+  double density = 0;        ///< rho [kg/m^3]
+  double charge_density = 0; ///< rho_q [C/m^3]
+};
+
+/// Fastest rates of the linearised chain, for the terms that the scene has [1/s].
+///
+///     relaxation      1/tau = G/mu
+///     elastic         omega_el = 2 sqrt(G/rho) / l
+///     viscous         4 mu / (rho l^2)
+///     Coulomb         sqrt(7 zeta(3)) Gamma = 2.901 Gamma,   Gamma = rho_q sqrt(pi k_C/rho) a/l
+///     growth          sqrt(7 zeta(3)/2) Gamma = 2.051 Gamma  (bending instability: not stiff)
+///     surface tension paper: 2 sqrt(alpha/(rho l^3))         line: 2 sqrt(alpha/(rho a)) / l
+///
+/// source : longitudinal and transverse modes of an infinite chain in which neighbours move in
+///          opposite phase; the Coulomb sums are 8 sum 1/j^3 over odd j = 7 zeta(3)
+/// checked: Stability tests, against a table computed independently
+struct ChainRates {
+  std::optional<double> relaxation, elastic, viscous;
+  std::optional<double> coulomb, coulomb_growth;
+  std::optional<double> surface_tension;
+};
+ChainRates chain_rates(const SceneConfig& config, const LinkState& link);
+
+/// Longest stable step of the classical Runge-Kutta method, per term; infinite if a term that
+/// the scene has limits nothing (no charge, say) [s].
+///
+/// The viscoelastic limit is the least over the modes s^2 + s/tau + (omega_el sin(kappa/2))^2 = 0.
+struct StepLimits {
+  std::optional<double> viscoelastic, coulomb, surface_tension;
+
+  [[nodiscard]] double least() const; ///< infinite if no term limits the step
+};
+StepLimits step_limits(const ChainRates& rates);
+
+/// Longest step for which the classical Runge-Kutta method damps y' = s y (or keeps it),
+/// |1 + z + z^2/2 + z^3/6 + z^4/24| <= 1 with z = s dt: 2.828/|s| for an oscillation,
+/// 2.785/|s| for a decay. `s` does not grow: its real part is at most 0.
+double longest_stable_step(std::complex<double> s);
+
+/// Link k of a chain scene, or (k = 1) the link that leaves the nozzle.
+LinkState link_state(const Scene& scene, std::size_t k = 1);
+
+/// The link of a chain scene with the fastest elastic, Coulomb or surface-tension rate
+/// (relaxation is the same everywhere); 1 for a nozzle scene.
+std::size_t stiffest_link(const Scene& scene);
+
+} // namespace ehdjet

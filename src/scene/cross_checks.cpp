@@ -1,0 +1,158 @@
+#include "cross_checks.hpp"
+
+#include "ehdjet/integrators/butcher_tableau.hpp"
+#include "ehdjet/scene/schema.hpp"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+namespace ehdjet {
+namespace {
+
+constexpr double default_rtol = 1e-6;
+/// More rows than this are a mistyped interval: 1e8 rows of observables are 10 GB.
+constexpr double most_rows = 1e8;
+
+void check_jet(const SceneConfig& c, const SceneText& text) {
+  if (c.nozzle && c.chain)
+    text.fail("chain",
+              "both [nozzle] and [chain] are given: a jet is born at a nozzle or is a "
+              "given chain of beads. Remove one");
+  if (!c.nozzle && !c.chain)
+    text.fail(
+        "",
+        "neither [nozzle] nor [chain] is given: exactly one of them says what the jet is");
+  if (!c.nozzle) return;
+
+  const double a = c.nozzle->radius, l = c.nozzle->link_length;
+  if (a > l)
+    text.fail("nozzle.radius",
+              fmt::format(
+                  "nozzle.radius = {} m and nozzle.link_length = {} m: the radius must be "
+                  "at most the link length, beads stand for slender pieces of jet. "
+                  "Lengths are in metres",
+                  a, l));
+  if (c.collector && c.collector->distance <= 2 * l)
+    text.fail("collector.distance",
+              fmt::format(
+                  "collector.distance = {} m and nozzle.link_length = {} m: the collector "
+                  "must be more than two link lengths away, that is where a bead leaves "
+                  "the nozzle. Lengths are in metres",
+                  c.collector->distance, l));
+}
+
+void check_field(const SceneConfig& c, const SceneText& text) {
+  if (!c.field) return;
+  const auto& [potential, strength] = *c.field;
+  if (potential && strength)
+    text.fail("field.strength",
+              fmt::format(
+                  "field.potential = {} V and field.strength = {} V/m: exactly one of them "
+                  "is needed. Remove one",
+                  *potential, *strength));
+  if (!potential && !strength)
+    text.fail("field",
+              "[field] has neither field.potential nor field.strength: exactly one of "
+              "them is needed");
+  if (potential && !c.collector)
+    text.fail(
+        "field.potential",
+        fmt::format("field.potential = {} V needs collector.distance, the field is their "
+                    "ratio: add [collector] or give field.strength",
+                    *potential));
+}
+
+void settle_step(IntegratorConfig& i, const SceneText& text) {
+  const bool has_error_estimate = butcher_tableau(i.method).error_order > 0;
+  const std::string method_is = fmt::format("integrator.method = \"{}\"", i.method);
+  if (i.rtol && i.step)
+    text.fail(
+        "integrator.step",
+        fmt::format("integrator.rtol = {} and integrator.step = {} s: the step is adaptive "
+                    "or fixed. Remove one",
+                    *i.rtol, *i.step));
+  if (i.rtol && !has_error_estimate)
+    text.fail(
+        "integrator.rtol",
+        fmt::format("integrator.rtol = {} and {}: this method has no error estimate. Give "
+                    "integrator.step, or take \"dormand-prince\" or \"dop853\"",
+                    *i.rtol, method_is));
+  if (!i.rtol && !i.step) {
+    if (!has_error_estimate)
+      text.fail("integrator.method",
+                fmt::format(
+                    "{} needs integrator.step: this method has no error estimate to choose "
+                    "its own steps by",
+                    method_is));
+    i.rtol = default_rtol;
+  }
+}
+
+void check_adaptive_keys(const IntegratorConfig& i, const SceneText& text) {
+  if (i.step) {
+    for (const auto& [name, value] : {std::pair{"initial_step", i.initial_step},
+                                      {"max_step", i.max_step},
+                                      {"position_scale", i.position_scale},
+                                      {"stress_scale", i.stress_scale}})
+      if (value)
+        text.fail(
+            fmt::format("integrator.{}", name),
+            fmt::format("integrator.{} = {} and integrator.step = {} s: with a fixed step "
+                        "there is no error control. Remove one",
+                        name, *value, *i.step));
+    return;
+  }
+  for (const auto& [name, value] :
+       {std::pair{"initial_step", i.initial_step}, {"max_step", i.max_step}})
+    if (value && *value < i.min_step)
+      text.fail(fmt::format("integrator.{}", name),
+                fmt::format(
+                    "integrator.{} = {} s and integrator.min_step = {} s: must be at least "
+                    "the shortest step",
+                    name, *value, i.min_step));
+}
+
+void check_output(const SceneConfig& c, const SceneText& text) {
+  for (const auto& [name, interval] :
+       {std::pair{"observables", c.output.observables}, {"frames", c.output.frames}})
+    if (interval && c.run.end_time / *interval > most_rows)
+      text.fail(
+          fmt::format("output.{}", name),
+          fmt::format(
+              "output.{} = {} s and run.end_time = {} s: {:.2g} rows, more than {:.0e}",
+              name, *interval, c.run.end_time, c.run.end_time / *interval, most_rows));
+  if (c.output.deposit && !c.collector)
+    text.fail("output.deposit",
+              "output.deposit = true needs [collector]: nothing is deposited "
+              "without one");
+}
+
+} // namespace
+
+void settle(SceneConfig& config, const SceneText& text) {
+  check_jet(config, text);
+  check_field(config, text);
+  settle_step(config.integrator, text);
+  check_adaptive_keys(config.integrator, text);
+  if (config.integrator.stress_scale && !config.viscoelasticity)
+    text.fail(
+        "integrator.stress_scale",
+        fmt::format("integrator.stress_scale = {} Pa needs [viscoelasticity]: without it "
+                    "there is no stress",
+                    *config.integrator.stress_scale));
+  check_output(config, text);
+}
+
+void check_chain_fits(const Scene& scene, const SceneText& text) {
+  if (!scene.config.collector) return;
+  const double h = scene.config.collector->distance;
+  const auto& x = scene.chain.x;
+  const auto beyond = std::ranges::find_if(x, [h](double at) { return at > h; });
+  if (beyond != x.end())
+    text.fail("collector.distance",
+              fmt::format(
+                  "collector.distance = {} m, and bead {} of {} is at x = {} m, beyond it",
+                  h, beyond - x.begin(), scene.config.chain->file, *beyond));
+}
+
+} // namespace ehdjet

@@ -1,0 +1,154 @@
+#include "ehdjet/scene/scene_report.hpp"
+
+#include "ehdjet/scene/dimensionless.hpp"
+#include "ehdjet/scene/schema.hpp"
+#include "ehdjet/scene/stability.hpp"
+
+#include <cmath>
+#include <fmt/format.h>
+
+namespace ehdjet {
+namespace {
+
+std::string groups_text(const SceneConfig& config) {
+  const auto g = dimensionless_groups(config);
+  if (!g) return "";
+  std::string text =
+      fmt::format("\nDimensionless groups (Reneker et al. 2000; Lauricella et al. "
+                  "2015)\n  unit of length L0  {:.10g} m\n  unit of time tau   "
+                  "{:.10g} s\n",
+                  g->length, g->time);
+  const auto line = [&text](const char* symbol, std::optional<double> value,
+                            const char* meaning) {
+    if (value) text += fmt::format("  {:<5} {:<16.10g} {}\n", symbol, *value, meaning);
+  };
+  line("Q", config.coulomb ? std::optional(g->coulomb) : std::nullopt, "Coulomb force");
+  line("Phi", g->field, "external field");
+  line("Fve", g->viscoelastic, "viscoelastic force");
+  line("Fve'", g->viscoelastic_jetspin, "the same, radii in units of L0");
+  line("A", g->surface_tension, "surface tension");
+  line("Ks", g->nozzle_motion, "motion of the nozzle");
+  line("H", g->collector, "distance of the collector");
+  line("Fg", g->gravity, "gravity");
+  return text;
+}
+
+std::string stability_text(const Scene& scene) {
+  const std::size_t k = stiffest_link(scene);
+  const LinkState link = link_state(scene, k);
+  const ChainRates rates = chain_rates(scene.config, link);
+  const StepLimits limits = step_limits(rates);
+  if (!rates.elastic && !rates.coulomb && !rates.surface_tension) return "";
+  std::string text = fmt::format(
+      "\nFastest rates of a uniform chain like {} (l = {:.6g} m, a = {:.6g} m), and the "
+      "longest stable step of rk4\n",
+      scene.config.nozzle ? "the link that leaves the nozzle" : fmt::format("link {}", k),
+      link.length, link.radius);
+  const auto line = [&text](const char* term, std::optional<double> rate,
+                            std::optional<double> step) {
+    if (!rate) return;
+    text += fmt::format("  {:<24} {:>10.4g} 1/s", term, *rate);
+    if (step && std::isfinite(*step)) text += fmt::format("   {:>10.4g} s", *step);
+    text += '\n';
+  };
+  line("relaxation 1/tau", rates.relaxation, {});
+  line("viscous 4mu/(rho l^2)", rates.viscous, {});
+  line("elastic", rates.elastic, limits.viscoelastic);
+  line("Coulomb", rates.coulomb, limits.coulomb);
+  line("bending growth", rates.coulomb_growth, {});
+  line("surface tension", rates.surface_tension, limits.surface_tension);
+  const auto& i = scene.config.integrator;
+  if (i.method == "rk4" && i.step && *i.step > limits.least())
+    text += fmt::format(
+        "  WARNING: integrator.step = {} s is longer than the longest stable step "
+        "{:.4g} s: expect the run to blow up\n",
+        *i.step, limits.least());
+  return text;
+}
+
+std::string forces_text(const SceneConfig& c) {
+  std::vector<std::string> forces;
+  if (c.field)
+    forces.push_back(fmt::format("external field {:.6g} V/m", field_strength(c)));
+  if (c.gravity)
+    forces.push_back(fmt::format("gravity {:.6g} m/s^2", c.gravity->acceleration));
+  if (c.coulomb) forces.push_back(fmt::format("Coulomb ({})", c.coulomb->solver));
+  if (c.viscoelasticity)
+    forces.emplace_back(c.viscoelasticity->elastic_modulus > 0
+                                && c.viscoelasticity->viscosity > 0
+                            ? "viscoelasticity (Maxwell)"
+                            : "viscoelasticity (inviscid: the stress is 0)");
+  if (c.surface_tension)
+    forces.push_back(fmt::format("surface tension ({} form)",
+                                 name_of(c.surface_tension->form, surface_tension_forms)));
+  return forces.empty() ? "none: beads move in straight lines"
+                        : fmt::format("{}", fmt::join(forces, ", "));
+}
+
+std::string output_text(const SceneConfig& c) {
+  const auto rows = [&c](double interval) {
+    // The row at t = 0 and one at every multiple; round-off must not lose the last.
+    return std::floor(c.run.end_time / interval * (1 + 1e-12)) + 1;
+  };
+  std::vector<std::string> parts;
+  if (c.output.observables)
+    parts.push_back(fmt::format("{} rows of observables", rows(*c.output.observables)));
+  if (c.output.frames)
+    parts.push_back(fmt::format("{} frames of all beads", rows(*c.output.frames)));
+  if (c.output.deposit) parts.emplace_back("every bead that leaves at the collector");
+  return parts.empty() ? "none" : fmt::format("{}", fmt::join(parts, ", "));
+}
+
+std::string jet_text(const Scene& scene) {
+  const SceneConfig& c = scene.config;
+  if (!c.nozzle)
+    return fmt::format("a chain of {} beads from {}, fixed ends: {}; nothing is inserted",
+                       scene.chain.size(), c.chain->file,
+                       name_of(c.chain->fixed, fixed_ends));
+  return "born at the nozzle: a link that reaches 1.5 link lengths gets a new bead, "
+         "released at 2 "
+         "link lengths";
+}
+
+/// Times that follow from single numbers of the scene.
+std::string times_text(const Scene& scene) {
+  const SceneConfig& c = scene.config;
+  std::string text;
+  const LinkState link = link_state(scene, stiffest_link(scene));
+  const double a = link.charge_density / link.density * field_strength(c)
+                   + (c.gravity ? c.gravity->acceleration : 0);
+  if (a != 0) text += fmt::format("  acceleration by field and gravity {:.6g} m/s^2", a);
+  if (a > 0 && c.nozzle && c.collector)
+    text += fmt::format("; a lone bead from rest would reach the collector after {:.4g} s",
+                        std::sqrt(2 * c.collector->distance / a));
+  return text.empty() ? text : text + '\n';
+}
+
+std::string run_text(const Scene& scene) {
+  const SceneConfig& c = scene.config;
+  const auto& i = c.integrator;
+  std::string text = "\nWhat will be simulated\n";
+  text += fmt::format("  jet: {}\n  forces: {}\n", jet_text(scene), forces_text(c));
+  text += c.collector
+              ? fmt::format("  collector: beads land at x = {} m and leave the chain\n",
+                            c.collector->distance)
+              : "  collector: none, beads fly on\n";
+  text += fmt::format("  time: 0 to {} s, {}, {}", c.run.end_time, i.method,
+                      i.step ? fmt::format("step {} s ({:.0f} steps)", *i.step,
+                                           std::ceil(c.run.end_time / *i.step))
+                             : fmt::format("rtol {}, adaptive", *i.rtol));
+  if (c.nozzle || c.collector)
+    text += i.events == EventPlacement::located ? "; events located inside steps"
+                                                : "; events at the ends of steps";
+  text += fmt::format("\n  output: {}\n", output_text(c));
+  return text + times_text(scene);
+}
+
+} // namespace
+
+std::string scene_report(const Scene& scene) {
+  return resolved_toml(scene.config) + groups_text(scene.config) + stability_text(scene)
+         + run_text(scene);
+}
+
+} // namespace ehdjet

@@ -1,0 +1,121 @@
+#include "ehdjet/scene/stability.hpp"
+
+#include "ehdjet/core/constants.hpp"
+#include "ehdjet/core/error.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace ehdjet {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double zeta_3 = 1.2020569031595942854; // Apery's constant, OEIS A002117
+
+double limit_of_oscillation(double rate) {
+  return rate == 0 ? infinity : longest_stable_step({0, rate});
+}
+
+/// The least limit over the modes of the Maxwell chain, kappa from 0 (pure relaxation) to pi.
+double viscoelastic_limit(double relaxation, double elastic) {
+  if (std::isinf(relaxation)) return 0;
+  constexpr int modes = 64;
+  double limit = longest_stable_step(-relaxation);
+  for (int i = 1; i <= modes; ++i) {
+    const double omega = elastic * std::sin(0.5 * std::numbers::pi * i / modes);
+    const double decay = 0.5 * relaxation,
+                 scale = std::max(decay, omega); // squares may overflow
+    const std::complex<double> root = std::sqrt(
+        std::complex<double>((decay - omega) / scale * ((decay + omega) / scale)));
+    // The faster root; in an overdamped mode the other one is slower and real.
+    limit = std::min(limit, longest_stable_step(-decay - scale * root));
+  }
+  return limit;
+}
+
+} // namespace
+
+ChainRates chain_rates(const SceneConfig& config, const LinkState& link) {
+  const auto& [l, a, rho, rho_q] = link;
+  EHDJET_EXPECTS(l > 0 && a > 0 && rho > 0);
+  ChainRates rates;
+  if (const auto& fluid = config.viscoelasticity;
+      fluid && fluid->elastic_modulus > 0 && fluid->viscosity > 0) {
+    rates.relaxation = fluid->elastic_modulus / fluid->viscosity;
+    rates.elastic = 2 * std::sqrt(fluid->elastic_modulus / rho) / l;
+    rates.viscous = 4 * fluid->viscosity / (rho * l * l);
+  }
+  if (config.coulomb) {
+    const double gamma =
+        std::abs(rho_q) * std::sqrt(std::numbers::pi * constants::coulomb / rho) * a / l;
+    rates.coulomb = std::sqrt(7 * zeta_3) * gamma;
+    rates.coulomb_growth = std::sqrt(3.5 * zeta_3) * gamma;
+  }
+  if (const auto& tension = config.surface_tension)
+    rates.surface_tension = tension->form == SurfaceTensionForm::paper
+                                ? 2 * std::sqrt(tension->coefficient / (rho * l * l * l))
+                                : 2 * std::sqrt(tension->coefficient / (rho * a)) / l;
+  return rates;
+}
+
+StepLimits step_limits(const ChainRates& rates) {
+  StepLimits limits;
+  if (rates.relaxation)
+    limits.viscoelastic = viscoelastic_limit(*rates.relaxation, *rates.elastic);
+  if (rates.coulomb) limits.coulomb = limit_of_oscillation(*rates.coulomb);
+  if (rates.surface_tension)
+    limits.surface_tension = limit_of_oscillation(*rates.surface_tension);
+  return limits;
+}
+
+double StepLimits::least() const {
+  return std::min({viscoelastic.value_or(infinity), coulomb.value_or(infinity),
+                   surface_tension.value_or(infinity)});
+}
+
+double longest_stable_step(std::complex<double> s) {
+  EHDJET_EXPECTS(s.real() <= 0 && std::abs(s) > 0);
+  const std::complex<double> direction = s / std::abs(s);
+  const auto stable = [&](double r) {
+    const std::complex<double> z = r * direction;
+    const double round_off = 1e-14; // on the imaginary axis |R| = 1 - r^6/144 + ...
+    return std::abs(1. + z * (1. + z / 2. * (1. + z / 3. * (1. + z / 4.))))
+           <= 1 + round_off;
+  };
+  // The stability region is left before |z| = 4 in every direction (Hairer, Wanner, Solving
+  // Ordinary Differential Equations II, 2nd ed. (1996), fig. IV.2.1).
+  double inside = 0, outside = 0.05;
+  while (outside < 4 && stable(outside)) inside = outside, outside += 0.05;
+  for (int i = 0; i < 60; ++i) {
+    const double middle = 0.5 * (inside + outside);
+    (stable(middle) ? inside : outside) = middle;
+  }
+  return inside / std::abs(s);
+}
+
+LinkState link_state(const Scene& scene, std::size_t k) {
+  if (const auto& n = scene.config.nozzle)
+    return {n->link_length, n->radius, n->density, n->charge_density};
+  const ChainBeads& b = scene.chain;
+  EHDJET_EXPECTS(k >= 1 && k < b.size());
+  const double l =
+      std::hypot(b.x[k] - b.x[k - 1], b.y[k] - b.y[k - 1], b.z[k] - b.z[k - 1]);
+  return {l, std::sqrt(b.volume[k] / (std::numbers::pi * l)), b.mass[k] / b.volume[k],
+          b.charge[k] / b.volume[k]};
+}
+
+std::size_t stiffest_link(const Scene& scene) {
+  std::size_t stiffest = 1;
+  double fastest = 0;
+  for (std::size_t k = 1; k < scene.chain.size(); ++k) {
+    const ChainRates r = chain_rates(scene.config, link_state(scene, k));
+    const double rate = std::max(
+        {r.elastic.value_or(0), r.coulomb.value_or(0), r.surface_tension.value_or(0)});
+    if (rate > fastest) fastest = rate, stiffest = k;
+  }
+  return stiffest;
+}
+
+} // namespace ehdjet

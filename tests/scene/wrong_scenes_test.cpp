@@ -1,0 +1,224 @@
+#include <ostream>
+
+#include "support.hpp"
+
+namespace ehdjet {
+namespace {
+
+/// One line of the good scene broken, and what the message must contain.
+struct Wrong {
+  const char* name;
+  const char* piece;
+  const char* by;
+  std::vector<std::string> expected;
+};
+std::ostream& operator<<(std::ostream& os, const Wrong& w) {
+  return os << w.name;
+}
+
+const Wrong wrong_scenes[] = {
+    {"unknown_key",
+     "radius = 5e-5",
+     "radus = 5e-5", //
+     {"s.toml:5: ", "unknown key nozzle.radus", "did you mean nozzle.radius?"}},
+    {"key_of_another_table",
+     "potential = 9000",
+     "potential = 9000\nviscosity = 2",
+     {"s.toml:14: ", "unknown key field.viscosity",
+      "did you mean viscoelasticity.viscosity?"}},
+    {"key_outside_its_table",
+     "title = \"good\"",
+     "end_time = 1",
+     {"s.toml:1: ", "unknown key end_time", "did you mean run.end_time?"}},
+    {"unknown_table",
+     "[collector]",
+     "[colector]", //
+     {"s.toml:10: ", "unknown table [colector]", "did you mean [collector]?"}},
+    {"nothing_is_near",
+     "radius = 5e-5",
+     "bananas = 5e-5",
+     {"s.toml:5: unknown key nozzle.bananas"}},
+    {"table_as_number",
+     "[gravity]\nacceleration = 9.80665",
+     "[[gravity]]", //
+     {"s.toml:14: ", "gravity = an array", "must be a table [gravity]"}},
+
+    {"text_for_a_number",
+     "radius = 5e-5",
+     "radius = \"thin\"", //
+     {"s.toml:5: ", "nozzle.radius = \"thin\"", "a number", "a0"}},
+    {"number_for_text",
+     "title = \"good\"",
+     "title = 3",
+     {"s.toml:1: ", "title = 3", "must be text in quotes"}},
+    {"number_for_a_choice",
+     "coefficient = 0.021",
+     "coefficient = 0.021\nform = 2",
+     {"s.toml:22: ", "surface_tension.form = 2", "\"paper\" or \"line\""}},
+    {"number_for_yes_or_no",
+     "observables = 1e-4",
+     "deposit = 1",
+     {"s.toml:25: ", "output.deposit = 1", "must be true or false"}},
+    {"fraction_of_a_thread",
+     "end_time = 0.01",
+     "end_time = 0.01\nthreads = 1.5",
+     {"s.toml:4: ", "run.threads = 1.5", "a whole number from 1 to 4096"}},
+
+    {"negative_radius",
+     "radius = 5e-5",
+     "radius = -5e-05",
+     {"s.toml:5: nozzle.radius = -5e-05 m: must be greater than 0", "0.002 m", "a0"}},
+    {"zero_length", "link_length = 2e-4", "link_length = 0", {"nozzle.link_length = 0 m"}},
+    {"radius_in_centimetres",
+     "radius = 5e-5",
+     "radius = 0.005", //
+     {"nozzle.radius = 0.005 m", "at most 0.002 m, in SI units"}},
+    {"density_in_grams_per_cubic_centimetre",
+     "density = 840",
+     "density = 0.84",
+     {"nozzle.density = 0.84 kg/m^3", "from 1 to 100000 kg/m^3, in SI units"}},
+    {"charge_density_in_statcoulombs",
+     "charge_density = 14.7",
+     "charge_density = 44000",
+     {"nozzle.charge_density = 44000 C/m^3", "in SI units"}},
+    {"collector_in_centimetres",
+     "distance = 0.16",
+     "distance = 16",
+     {"collector.distance = 16 m"}},
+    {"gravity_in_centimetres",
+     "acceleration = 9.80665",
+     "acceleration = 980.665",
+     {"gravity.acceleration = 980.665 m/s^2", "in SI units"}},
+    {"not_a_number",
+     "density = 840",
+     "density = nan",
+     {"s.toml:8: nozzle.density = nan kg/m^3"}},
+    {"infinity", "end_time = 0.01", "end_time = inf", {"s.toml:3: run.end_time = inf s"}},
+    {"unknown_method",
+     "rtol = 1e-5",
+     "method = \"rk45\"",
+     {"s.toml:23: integrator.method = \"rk45\"", "\"dormand-prince\" or \"dop853\""}},
+    {"unknown_solver",
+     "[coulomb]",
+     "[coulomb]\nsolver = \"guess\"", //
+     {"s.toml:17: coulomb.solver = \"guess\"", "\"direct\""}},
+
+    {"missing_key",
+     "radius = 5e-5\n",
+     "",
+     {"s.toml:4: nozzle.radius is missing", "greater than 0", "m", "a0"}},
+    {"missing_table",
+     "[run]\nend_time = 0.01\n",
+     "",
+     {"s.toml: run.end_time is missing", "greater than 0"}},
+
+    {"thick_beads",
+     "radius = 5e-5",
+     "radius = 1e-3",
+     {"s.toml:5: ", "nozzle.radius = 0.001 m", "nozzle.link_length = 0.0002 m", "metres"}},
+    {"collector_at_the_nozzle",
+     "distance = 0.16",
+     "distance = 4e-4",
+     {"s.toml:11: ", "collector.distance = 0.0004 m", "nozzle.link_length = 0.0002 m"}},
+    {"nozzle_and_chain",
+     "[collector]",
+     "[chain]\nfile = \"c.csv\"\n[collector]",
+     {"s.toml:10: ", "both [nozzle] and [chain]"}},
+    {"field_twice",
+     "potential = 9000",
+     "potential = 9000\nstrength = 56250",
+     {"s.toml:14: ", "field.potential = 9000 V", "field.strength = 56250 V/m",
+      "exactly one"}},
+    {"field_without_value",
+     "potential = 9000\n",
+     "", //
+     {"s.toml:12: ", "neither field.potential nor field.strength"}},
+    {"potential_without_collector",
+     "[collector]\ndistance = 0.16\n",
+     "",
+     {"s.toml:11: ", "field.potential = 9000 V", "needs collector.distance"}},
+    {"tolerance_and_step",
+     "rtol = 1e-5",
+     "rtol = 1e-5\nstep = 1e-8",
+     {"s.toml:24: ", "integrator.rtol = 1e-05", "integrator.step = 1e-08 s"}},
+    {"tolerance_without_estimate",
+     "rtol = 1e-5",
+     "rtol = 1e-5\nmethod = \"rk4\"",
+     {"s.toml:23: ", "integrator.rtol = 1e-05", "integrator.method = \"rk4\"",
+      "integrator.step"}},
+    {"neither_tolerance_nor_step_nor_estimate",
+     "rtol = 1e-5",
+     "method = \"euler\"",
+     {"s.toml:23: ", "integrator.method = \"euler\" needs integrator.step"}},
+    {"first_step_of_fixed_steps",
+     "rtol = 1e-5",
+     "step = 1e-8\ninitial_step = 1e-9",
+     {"s.toml:24: ", "integrator.initial_step = 1e-09", "integrator.step = 1e-08 s"}},
+    {"longest_step_below_the_shortest",
+     "rtol = 1e-5",
+     "max_step = 1e-9\nmin_step = 1e-6",
+     {"s.toml:23: ", "integrator.max_step = 1e-09 s", "integrator.min_step = 1e-06 s"}},
+    {"scale_of_a_stress_that_does_not_exist",
+     "[viscoelasticity]\nelastic_modulus = 5e3\nviscosity = "
+     "2\n[surface_tension]\ncoefficient = "
+     "0.021\n[integrator]",
+     "[integrator]\nstress_scale = 5",
+     {"s.toml:18: ", "integrator.stress_scale = 5 Pa", "[viscoelasticity]"}},
+    {"more_rows_than_a_disk",
+     "observables = 1e-4",
+     "observables = 1e-12",
+     {"s.toml:25: ", "output.observables = 1e-12 s", "run.end_time = 0.01 s",
+      "1e+10 rows"}},
+    {"no_time_between_rows",
+     "observables = 1e-4",
+     "frames = 0",
+     {"s.toml:25: output.frames = 0 s: must be greater than 0"}},
+    {"deposit_without_collector",
+     "[collector]\ndistance = 0.16\n[field]\npotential = 9000\n[gravity]\nacceleration = "
+     "9.80665\n[coulomb]\n[viscoelasticity]\nelastic_modulus = 5e3\nviscosity = "
+     "2\n[surface_tension]\ncoefficient = 0.021\n[integrator]\nrtol = 1e-5\n[output]",
+     "[output]\ndeposit = true",
+     {"s.toml:11: ", "output.deposit = true needs [collector]"}},
+
+    {"not_toml", "radius = 5e-5", "radius = 5e-5 m", {"s.toml:5:15: "}},
+    {"the_same_key_twice",
+     "radius = 5e-5",
+     "radius = 5e-5\nradius = 6e-5",
+     {"s.toml:6:", "radius"}},
+    {"the_same_table_twice",
+     "[coulomb]",
+     "[coulomb]\n[coulomb]",
+     {"s.toml:17:", "coulomb"}},
+};
+
+class WrongScenes : public testing::TestWithParam<Wrong> {};
+
+TEST_P(WrongScenes, are_refused_with_file_line_key_value_and_what_is_allowed) {
+  const Wrong& w = GetParam();
+  expect_all(complaint_about(good_scene_but(w.piece, w.by)), w.expected);
+}
+INSTANTIATE_TEST_SUITE_P(All, WrongScenes, testing::ValuesIn(wrong_scenes),
+                         [](const auto& p) { return p.param.name; });
+
+TEST(WrongScenes, the_good_scene_is_accepted) {
+  EXPECT_EQ(complaint_about(good_scene), "(accepted)");
+}
+
+TEST(WrongScenes, a_scene_without_a_jet_is_refused) {
+  expect_all(complaint_about("[run]\nend_time = 1\n"),
+             {"s.toml: neither [nozzle] nor [chain]"});
+}
+
+TEST(WrongScenes, a_missing_file_is_named_with_the_reason) {
+  expect_all(complaint([] { read_scene("no/such/scene.toml"); }),
+             {"no/such/scene.toml", "No such file"});
+  expect_all(complaint([] { read_scene("/"); }), {"it is a folder"});
+}
+
+TEST(WrongScenes, a_missing_chain_file_is_named_with_its_key) {
+  expect_all(complaint_about("[run]\nend_time = 1\n[chain]\nfile = \"none.csv\"\n"),
+             {"none.csv", "chain.file", "No such file"});
+}
+
+} // namespace
+} // namespace ehdjet
