@@ -1,0 +1,34 @@
+#pragma once
+
+#include "ehdjet/core/columns.hpp"
+
+#include <cstddef>
+#include <span>
+
+namespace ehdjet {
+
+/// How far a computed Coulomb force is from the exact one, in two norms. On a smooth chain
+/// the net force is a small residue of large terms: the first norm shows that, the second not.
+struct CoulombErrorSample {
+  double relative_l2 = 0; ///< [-] over all sampled targets
+  double worst_per_target =
+      0;                   ///< [-] relative to what acts on that target, before cancelling
+  std::size_t targets = 0; ///< how many were sampled
+};
+
+/// Compares `force` (from nothing but these charges) with a plain direct sum in long double,
+/// on up to `max_targets` evenly spaced targets i:
+///
+///     relative_l2      = sqrt( sum_i |dF_i|^2 / sum_i |F_i|^2 )
+///     worst_per_target = max_i |dF_i| / sum_j |f_ij|,   |f_ij| = k_C |q_i q_j| / r_ij^2
+///
+/// A ratio 0/0 is 0. Where long double is 80 bits wide the reference is good to 1e-19 sqrt(n)
+/// of sum_j |f_ij|.
+///
+/// shapes : r, q, force (n)           units : [m], [C], [N]
+/// cost   : max_targets * n pairs of about 15 ns, shared by all threads
+/// errors : sizes that differ, or no target allowed, are a ContractViolation
+CoulombErrorSample sampled_error(ConstVec3View r, std::span<const double> q,
+                                 ConstVec3View force, std::size_t max_targets = 2000);
+
+} // namespace ehdjet
