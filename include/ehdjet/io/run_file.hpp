@@ -1,0 +1,51 @@
+#pragma once
+
+#include "ehdjet/simulation/observer.hpp"
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+
+namespace ehdjet {
+
+class RunWriter; // HDF5 stays inside src/io
+
+/// What a run file says about where it came from. Written as root attributes.
+struct Provenance {
+  std::string scene_file, scene_given, scene_resolved;
+  std::map<std::string, std::string>
+      environment; ///< version, commit, compiler, simd, threads, ...
+};
+
+/// One run, one HDF5 file, written as the run goes. Layout: src/io/README.md.
+///
+/// Readable without this project (h5py, h5dump) and, up to the last flush, after the process
+/// was killed. Only the parts that are asked for exist in the file.
+/// errors : InputError if the file exists and `overwrite` is false, or cannot be created;
+///          RunError if writing fails (disk full)
+class RunFile {
+public:
+  RunFile(const std::filesystem::path& path, bool overwrite, const Provenance& provenance,
+          double flush_interval);
+  ~RunFile(); ///< closes; a file without `finish` keeps the status "running"
+  RunFile(const RunFile&) = delete;
+  RunFile& operator=(const RunFile&) = delete;
+
+  /// Observers that write to this file; they must not outlive it. `interval` in [s].
+  std::unique_ptr<Observer> observables(double interval);
+  std::unique_ptr<Observer> frames(double interval, bool with_stress);
+  std::unique_ptr<Observer> deposit();
+
+  /// Makes everything written so far readable by others.
+  void flush();
+  /// Last words: status "complete", "interrupted" or "failed", a message, the run's cost and
+  /// what entered and left the jet.
+  void finish(const std::string& status, const std::string& message,
+              const RunStatistics& statistics, const Ledger& ledger);
+
+private:
+  std::unique_ptr<RunWriter> writer_;
+};
+
+} // namespace ehdjet

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace ehdjet {
+
+/// The chain at one instant as a run file has it, bead 0 (the nozzle) first. SI units.
+struct Frame {
+  double time = 0; ///< [s]
+  std::vector<double> x, y, z, vx, vy, vz;
+  std::vector<double> stress; ///< zeros if the run had none
+  std::vector<double> radius, volume, mass, charge;
+  std::vector<std::uint8_t> landed, embryo;
+
+  [[nodiscard]] std::size_t beads() const { return x.size(); }
+};
+
+/// The deposited fibre as a run file has it, in the order in which beads left the chain. SI units.
+struct DepositTable {
+  std::vector<double> time, removal_time, x, y, z, vx, vy, vz, stress, landing_radius,
+      radius, mass, charge, volume;
+
+  [[nodiscard]] std::size_t beads() const { return time.size(); }
+};
+
+/// Reads what a RunFile wrote; the run may have been killed or be still going on.
+///
+/// errors : InputError with the path if the file is missing, no HDF5 file, truncated, no run or
+///          from a later version, and if a part is asked for that the run was not to write
+class RunReader {
+public:
+  explicit RunReader(const std::filesystem::path& path);
+  ~RunReader();
+  RunReader(const RunReader&) = delete;
+  RunReader& operator=(const RunReader&) = delete;
+
+  [[nodiscard]] const std::filesystem::path& path() const;
+  [[nodiscard]] std::string status() const; ///< "running" if the run was killed
+  [[nodiscard]] std::string message() const;
+  [[nodiscard]] std::string
+  attribute(const std::string& name) const; ///< provenance, by name
+  [[nodiscard]] std::string scene_given() const;
+  [[nodiscard]] std::string scene_resolved() const;
+
+  [[nodiscard]] bool has_observables() const;
+  [[nodiscard]] bool has_frames() const;
+  [[nodiscard]] bool has_deposit() const;
+
+  /// Names of the observables, alphabetically.
+  [[nodiscard]] std::vector<std::string> columns() const;
+  /// One observable at all its times; counts come out as doubles, exact up to 2^53.
+  [[nodiscard]] std::vector<double> observable(const std::string& column) const;
+
+  [[nodiscard]] std::vector<double> frame_times() const;
+  [[nodiscard]] Frame frame(std::size_t index) const;
+  /// Index of the frame nearest to `time`; of two equally near ones the earlier.
+  [[nodiscard]] std::size_t nearest_frame(double time) const;
+
+  [[nodiscard]] DepositTable deposit() const;
+
+private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+} // namespace ehdjet

@@ -1,0 +1,149 @@
+#include "hdf5.hpp"
+
+#include <memory>
+
+namespace ehdjet::hdf5 {
+
+namespace {
+
+herr_t keep_description(unsigned depth, const H5E_error2_t* error, void* text) {
+  if (depth == 0 && error->desc != nullptr) *static_cast<std::string*>(text) = error->desc;
+  return 0;
+}
+
+Handle scalar() {
+  return {H5Screate(H5S_SCALAR), H5Sclose};
+}
+
+void write_attribute(hid_t object, const char* name, hid_t type, const void* value) {
+  const bool exists = has_attribute(object, name);
+  const Handle attribute(
+      exists ? H5Aopen(object, name, H5P_DEFAULT)
+             : H5Acreate2(object, name, type, scalar(), H5P_DEFAULT, H5P_DEFAULT),
+      H5Aclose);
+  check(H5Awrite(attribute, type, value));
+}
+
+struct FreeText {
+  void operator()(char* text) const { H5free_memory(text); }
+};
+
+} // namespace
+
+void fail() {
+  std::string description = "unknown HDF5 error"; // of the innermost call: the cause
+  H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, keep_description, &description);
+  throw Failure(description);
+}
+
+Handle::Handle(hid_t id, Close close)
+    : id_(id)
+    , close_(close) {
+  if (id < 0) fail();
+}
+
+void Handle::reset() {
+  if (id_ >= 0) close_(id_);
+  id_ = H5I_INVALID_HID;
+}
+
+void silence_errors() {
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+}
+
+Handle string_type() {
+  Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
+  check(H5Tset_size(type, H5T_VARIABLE));
+  check(H5Tset_cset(type, H5T_CSET_UTF8));
+  return type;
+}
+
+Handle create_group(hid_t parent, const char* name) {
+  const Handle properties(H5Pcreate(H5P_GROUP_CREATE), H5Pclose);
+  check(
+      H5Pset_link_phase_change(properties, 64, 32)); // one record, not a heap and an index
+  check(H5Pset_attr_phase_change(properties, 64, 32));
+  return {H5Gcreate2(parent, name, H5P_DEFAULT, properties, H5P_DEFAULT), H5Gclose};
+}
+
+bool has(hid_t parent, const char* name) {
+  return check(H5Lexists(parent, name, H5P_DEFAULT)) > 0;
+}
+
+void write_attribute(hid_t object, const char* name, const std::string& value) {
+  const char* text = value.c_str();
+  write_attribute(object, name, string_type(), &text);
+}
+void write_attribute(hid_t object, const char* name, double value) {
+  write_attribute(object, name, H5T_NATIVE_DOUBLE, &value);
+}
+void write_attribute(hid_t object, const char* name, std::uint64_t value) {
+  write_attribute(object, name, H5T_NATIVE_UINT64, &value);
+}
+
+void write_text(hid_t group, const char* name, const std::string& value) {
+  const char* text = value.c_str();
+  const Handle type = string_type();
+  const Handle dataset(
+      H5Dcreate2(group, name, type, scalar(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+      H5Dclose);
+  check(H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, &text));
+}
+
+bool has_attribute(hid_t object, const char* name) {
+  return check(H5Aexists(object, name)) > 0;
+}
+
+std::string read_text_attribute(hid_t object, const char* name) {
+  const Handle attribute(H5Aopen(object, name, H5P_DEFAULT), H5Aclose);
+  char* text = nullptr;
+  check(H5Aread(attribute, string_type(), &text));
+  const std::unique_ptr<char, FreeText> owner(text);
+  return text != nullptr ? text : "";
+}
+
+std::uint64_t read_count_attribute(hid_t object, const char* name) {
+  const Handle attribute(H5Aopen(object, name, H5P_DEFAULT), H5Aclose);
+  std::uint64_t value = 0;
+  check(H5Aread(attribute, H5T_NATIVE_UINT64, &value));
+  return value;
+}
+
+std::string read_text(hid_t group, const char* name) {
+  const Handle dataset(H5Dopen2(group, name, H5P_DEFAULT), H5Dclose);
+  char* text = nullptr;
+  check(H5Dread(dataset, string_type(), H5S_ALL, H5S_ALL, H5P_DEFAULT, &text));
+  const std::unique_ptr<char, FreeText> owner(text);
+  return text != nullptr ? text : "";
+}
+
+hid_t native(double) {
+  return H5T_NATIVE_DOUBLE;
+}
+hid_t native(std::uint64_t) {
+  return H5T_NATIVE_UINT64;
+}
+hid_t native(std::uint8_t) {
+  return H5T_NATIVE_UINT8;
+}
+
+hsize_t length(hid_t dataset) {
+  const Handle space(H5Dget_space(dataset), H5Sclose);
+  return static_cast<hsize_t>(check(H5Sget_simple_extent_npoints(space)));
+}
+
+template <class T>
+std::vector<T> read_rows(hid_t dataset, hsize_t first, hsize_t rows) {
+  std::vector<T> values(rows);
+  if (rows == 0) return values;
+  const Handle space(H5Dget_space(dataset), H5Sclose);
+  const Handle memory(H5Screate_simple(1, &rows, nullptr), H5Sclose);
+  check(H5Sselect_hyperslab(space, H5S_SELECT_SET, &first, nullptr, &rows, nullptr));
+  check(H5Dread(dataset, native(T{}), memory, space, H5P_DEFAULT, values.data()));
+  return values;
+}
+template std::vector<double> read_rows(hid_t, hsize_t, hsize_t);
+template std::vector<std::uint64_t> read_rows(hid_t, hsize_t, hsize_t);
+template std::vector<std::uint8_t> read_rows(hid_t, hsize_t, hsize_t);
+
+} // namespace ehdjet::hdf5

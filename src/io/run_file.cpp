@@ -1,0 +1,38 @@
+#include "ehdjet/io/run_file.hpp"
+
+#include "ehdjet/core/error.hpp"
+
+#include "run_writer.hpp"
+
+namespace ehdjet {
+
+RunFile::RunFile(const std::filesystem::path& path, bool overwrite,
+                 const Provenance& provenance, double flush_interval)
+    : writer_(std::make_unique<RunWriter>(path, overwrite, provenance, flush_interval)) {}
+
+RunFile::~RunFile() = default;
+
+std::unique_ptr<Observer> RunFile::observables(double interval) {
+  EHDJET_EXPECTS(interval > 0);
+  return make_observables(*writer_, interval);
+}
+
+std::unique_ptr<Observer> RunFile::frames(double interval, bool with_stress) {
+  EHDJET_EXPECTS(interval > 0);
+  return make_frames(*writer_, interval, with_stress);
+}
+
+std::unique_ptr<Observer> RunFile::deposit() {
+  return make_deposit(*writer_);
+}
+
+void RunFile::flush() {
+  writer_->flush();
+}
+
+void RunFile::finish(const std::string& status, const std::string& message,
+                     const RunStatistics& statistics, const Ledger& ledger) {
+  writer_->finish(status, message, statistics, ledger);
+}
+
+} // namespace ehdjet

@@ -1,0 +1,233 @@
+#include "run_writer.hpp"
+
+#include "ehdjet/core/error.hpp"
+
+#include <cerrno>
+#include <cstring>
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <system_error>
+#include <unistd.h>
+
+#include "file_driver.hpp"
+
+namespace ehdjet {
+
+namespace fs = std::filesystem;
+using hdf5::Handle;
+
+namespace {
+
+// The file grows beside its final name and takes that name once it is complete enough to be
+// opened: whatever goes wrong before leaves an older file of that name as it was.
+class TemporaryFile {
+public:
+  explicit TemporaryFile(const fs::path& target)
+      : target_(target)
+      , path_(target.parent_path()
+              / fmt::format(".{}.{}", target.filename().string(),
+                            static_cast<long>(::getpid()))) {
+    const int file =
+        ::open(path_.c_str(), O_CREAT | O_EXCL | O_RDWR | O_CLOEXEC, 0666); // NOLINT
+    if (file < 0) {
+      throw InputError(fmt::format("cannot create {}: {}. Choose another name with -o",
+                                   target.string(), std::strerror(errno)));
+    }
+    ::close(file);
+  }
+  ~TemporaryFile() {
+    std::error_code ignored;
+    if (!renamed_) fs::remove(path_, ignored);
+  }
+  TemporaryFile(const TemporaryFile&) = delete;
+  TemporaryFile& operator=(const TemporaryFile&) = delete;
+
+  [[nodiscard]] const fs::path& path() const { return path_; }
+  void rename() {
+    std::error_code error;
+    fs::rename(path_, target_, error);
+    if (error)
+      throw InputError(
+          fmt::format("cannot create {}: {}", target_.string(), error.message()));
+    renamed_ = true;
+  }
+
+private:
+  fs::path target_, path_;
+  bool renamed_ = false;
+};
+
+// Where the file will really be, if it may be there.
+fs::path checked(const fs::path& path, bool overwrite) {
+  std::error_code ignored;
+  if (fs::exists(path, ignored)) {
+    const std::string name = path.string();
+    if (!fs::is_regular_file(path))
+      throw InputError(name + " is no regular file: choose another name with -o");
+    if (!overwrite) {
+      throw InputError(
+          name + " exists: choose another name with -o or overwrite it with --force");
+    }
+    if (::access(path.c_str(), W_OK) != 0) {
+      throw InputError(fmt::format("cannot overwrite {}: {}", name, std::strerror(errno)));
+    }
+    return fs::canonical(path); // through links
+  }
+  const fs::path absolute = fs::absolute(path);
+  if (!fs::is_directory(absolute.parent_path(), ignored)) {
+    throw InputError(fmt::format("cannot create {}: there is no folder {}", path.string(),
+                                 absolute.parent_path().string()));
+  }
+  return absolute;
+}
+
+Handle file_creation() {
+  Handle properties(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
+  // HDF5 would reuse freed space at once, while the last flush still needs it; the driver does not.
+  hdf5::check(H5Pset_file_space_strategy(properties, H5F_FSPACE_STRATEGY_NONE, false, 1));
+  hdf5::check(
+      H5Pset_link_phase_change(properties, 64, 32)); // one record, not a heap and an index
+  hdf5::check(H5Pset_attr_phase_change(properties, 64, 32));
+  return properties;
+}
+
+Handle file_access() {
+  return {hdf5::FileDriver::access_properties(), H5Pclose};
+}
+
+void write_statistics(hid_t file, const RunStatistics& statistics) {
+  const Handle group = hdf5::create_group(file, "statistics");
+  hdf5::write_attribute(group, "evaluations", statistics.evaluations);
+  hdf5::write_attribute(group, "steps", statistics.steps);
+  hdf5::write_attribute(group, "rejected", statistics.rejected);
+  hdf5::write_attribute(group, "insertions", statistics.insertions);
+  hdf5::write_attribute(group, "releases", statistics.releases);
+  hdf5::write_attribute(group, "landings", statistics.landings);
+  hdf5::write_attribute(group, "coincident_pairs", statistics.coincident_pairs);
+  hdf5::write_attribute(group, "shortest_step", statistics.shortest_step);
+  hdf5::write_attribute(group, "longest_step", statistics.longest_step);
+  hdf5::write_attribute(group, "wall_time", statistics.wall_time);
+}
+
+void write_ledger(hid_t file, const Ledger& ledger) {
+  const Handle group = hdf5::create_group(file, "ledger");
+  hdf5::write_attribute(group, "inserted_beads", ledger.inserted_beads);
+  hdf5::write_attribute(group, "removed_beads", ledger.removed_beads);
+  hdf5::write_attribute(group, "inserted_mass", ledger.inserted_mass);
+  hdf5::write_attribute(group, "removed_mass", ledger.removed_mass);
+  hdf5::write_attribute(group, "inserted_charge", ledger.inserted_charge);
+  hdf5::write_attribute(group, "removed_charge", ledger.removed_charge);
+  hdf5::write_attribute(group, "inserted_volume", ledger.inserted_volume);
+  hdf5::write_attribute(group, "removed_volume", ledger.removed_volume);
+  hdf5::write_attribute(group, "release_speed", ledger.release_speed);
+  hdf5::write_attribute(group, "impact_speed", ledger.impact_speed);
+  hdf5::write_attribute(group, "collector_radius", ledger.collector_radius);
+}
+
+void write_status(hid_t file, const std::string& status, const std::string& message) {
+  hdf5::write_attribute(file, "status", status);
+  hdf5::write_attribute(file, "message", message);
+}
+
+} // namespace
+
+RunWriter::RunWriter(const fs::path& path, bool overwrite, const Provenance& provenance,
+                     double flush_interval)
+    : path_(checked(path, overwrite))
+    , flush_interval_(flush_interval) {
+  hdf5::silence_errors();
+  TemporaryFile temporary(path_);
+  guard([&] {
+    file_ = {
+        H5Fcreate(temporary.path().c_str(), H5F_ACC_TRUNC, file_creation(), file_access()),
+        H5Fclose};
+    create(provenance);
+  });
+  flush();
+  temporary.rename();
+}
+
+RunWriter::~RunWriter() {
+  if (file_ < 0) return;
+  try {
+    if (!broken()) flush();
+  } catch (const Error&) { // nobody left to tell; what was flushed before is safe
+  }
+  close();
+}
+
+void RunWriter::create(const Provenance& provenance) {
+  hdf5::write_attribute(file_, "format", std::string("ehdjet run"));
+  hdf5::write_attribute(file_, "format_version", std::uint64_t{1});
+  write_status(file_, "running", "");
+  hdf5::write_attribute(file_, "scene_file", provenance.scene_file);
+  for (const auto& [name, value] : provenance.environment) {
+    hdf5::write_attribute(file_, name.c_str(), value);
+  }
+  const Handle scene = hdf5::create_group(file_, "scene");
+  hdf5::write_text(scene, "given", provenance.scene_given);
+  hdf5::write_text(scene, "resolved", provenance.scene_resolved);
+}
+
+Handle RunWriter::create_group(const char* name) {
+  return hdf5::create_group(file_, name);
+}
+
+void RunWriter::flush() {
+  guard([&] {
+    for (hdf5::Column& column : columns_) column.flush();
+    hdf5::check(H5Fflush(file_, H5F_SCOPE_LOCAL));
+    hdf5::FileDriver::of(file_).commit();
+  });
+  flushed_ = std::chrono::steady_clock::now();
+}
+
+void RunWriter::finish(const std::string& status, const std::string& message,
+                       const RunStatistics& statistics, const Ledger& ledger) {
+  EHDJET_EXPECTS(file_ >= 0); // once
+  const auto last_words = [&] {
+    write_status(file_, status, message);
+    write_statistics(file_, statistics);
+    write_ledger(file_, ledger);
+  };
+  if (!broken()) {
+    guard(last_words);
+    flush();
+    close();
+    return;
+  }
+  // Back to the last flush, which fits on the disk; it only has to be told why it is the last. The
+  // caller knows already that the file could not be written: failing again is no news.
+  close();
+  try {
+    guard([&] { file_ = {H5Fopen(path_.c_str(), H5F_ACC_RDWR, file_access()), H5Fclose}; });
+    guard(last_words);
+    flush();
+  } catch (const RunError&) {
+  }
+  close();
+}
+
+void RunWriter::close() {
+  columns_.clear();
+  file_.reset();
+}
+
+bool RunWriter::broken() const {
+  return file_ >= 0 && hdf5::FileDriver::of(file_).error() != 0;
+}
+
+void RunWriter::abandon(const hdf5::Failure& failure) {
+  if (broken()) throw_error();
+  if (file_ >= 0)
+    hdf5::FileDriver::of(file_).abandon(EIO); // not the disk: say what HDF5 says
+  throw RunError(fmt::format("cannot write {}: {}", path_.string(), failure.what()));
+}
+
+void RunWriter::throw_error() const {
+  throw RunError(fmt::format("cannot write {}: {}. It is readable up to the last flush",
+                             path_.string(),
+                             std::strerror(hdf5::FileDriver::of(file_).error())));
+}
+
+} // namespace ehdjet

@@ -1,0 +1,65 @@
+#include "io/fabricated_run.hpp"
+
+#include <memory>
+#include <random>
+
+namespace ehdjet::testing {
+
+FabricatedJet fabricated_jet(std::uint64_t k, bool with_stress) {
+  std::mt19937_64 bits(k);
+  std::uniform_real_distribution<double> number(0.1, 1);
+  FabricatedJet made;
+  made.time = static_cast<double>(k) * 1e-5;
+  const std::size_t beads = 2 + k * 13 % 61;
+  JetState& jet = made.jet;
+  for (std::size_t i = 0; i < beads; ++i) {
+    jet.mass.push_back(1e-10 * number(bits));
+    jet.charge.push_back(1e-12 * number(bits));
+    jet.volume.push_back(1e-13 * number(bits));
+  }
+  jet.y.assign((with_stress ? 7 : 6) * beads, -1e300);
+  for (std::size_t i = 0; i < jet.y.size(); ++i) made.values.push_back(number(bits) - 0.5);
+  jet.has_embryo = beads > 2 && k % 3 == 1;
+  if (beads > 4 && k % 4 == 0) jet.landed = {{beads - 2, 0, 0}, {beads - 1, 0, 0}};
+  made.ledger.inserted_beads = k;
+  made.ledger.inserted_charge = 2e-12 * static_cast<double>(k);
+  made.ledger.impact_speed = number(bits);
+  made.statistics.evaluations = 700 * k;
+  return made;
+}
+
+Provenance fabricated_provenance() {
+  return {"scenes/made up.toml",
+          "given = \"ä\"\n",
+          "resolved = 1\n",
+          {{"version", "0.1.0"}, {"threads", "2"}}};
+}
+
+DepositedBead fabricated_deposit(std::uint64_t k) {
+  std::mt19937_64 bits(k + 1000);
+  std::uniform_real_distribution<double> number(0.1, 1);
+  DepositedBead made;
+  made.time = number(bits), made.removal_time = number(bits);
+  made.bead.position = {number(bits), number(bits), number(bits)};
+  made.bead.velocity = {number(bits), number(bits), number(bits)};
+  made.bead.stress = number(bits), made.bead.volume = number(bits);
+  made.bead.mass = number(bits), made.bead.charge = number(bits);
+  made.landing_radius = number(bits), made.radius = number(bits);
+  return made;
+}
+
+void write_run(const std::filesystem::path& path, std::size_t frames, bool with_stress) {
+  RunFile file(path, false, fabricated_provenance(), 1e9);
+  const auto observables = file.observables(1e-5), deposit = file.deposit();
+  const auto shown = file.frames(1e-5, with_stress);
+  FabricatedJet jet;
+  for (std::size_t k = 0; k < frames; ++k) {
+    jet = fabricated_jet(k, with_stress);
+    observables->observe(jet.snapshot());
+    shown->observe(jet.snapshot());
+    deposit->deposit(fabricated_deposit(k));
+  }
+  file.finish("complete", "all is well", jet.statistics, jet.ledger);
+}
+
+} // namespace ehdjet::testing

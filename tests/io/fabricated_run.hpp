@@ -1,0 +1,72 @@
+#pragma once
+
+#include "ehdjet/io/run_file.hpp"
+#include "ehdjet/jet/jet_state.hpp"
+#include "ehdjet/simulation/observer.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <unistd.h>
+#include <vector>
+
+namespace ehdjet::testing {
+
+/// An empty folder that goes away with the test.
+class ScratchFolder {
+public:
+  ScratchFolder()
+      : path_(std::filesystem::temp_directory_path()
+              / ("ehdjet_io." + std::to_string(::getpid()) + "."
+                 + ::testing::UnitTest::GetInstance()->current_test_info()->name())) {
+    std::filesystem::remove_all(path_);
+    std::filesystem::create_directory(path_);
+  }
+  ~ScratchFolder() { std::filesystem::remove_all(path_); }
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+
+  [[nodiscard]] std::filesystem::path operator/(const std::string& name) const {
+    return path_ / name;
+  }
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+
+private:
+  std::filesystem::path path_;
+};
+
+/// A jet that no physics made: any number of beads, different numbers in every place.
+struct FabricatedJet {
+  double time = 0;
+  JetState jet;
+  std::vector<double> values; // what the snapshot shows; jet.y holds something else
+  Ledger ledger;
+  RunStatistics statistics;
+
+  [[nodiscard]] JetSnapshot snapshot() const {
+    return {time, JetColumns<const double>{values, jet.beads()}, jet, ledger, statistics};
+  }
+};
+
+/// Frame k of a run whose chain grows, shrinks, has an embryo now and then and a landed bead.
+FabricatedJet fabricated_jet(std::uint64_t k, bool with_stress = true);
+
+Provenance fabricated_provenance();
+
+/// Writes `frames` fabricated frames, a row and a deposited bead with each.
+void write_run(const std::filesystem::path& path, std::size_t frames,
+               bool with_stress = true);
+
+/// Bead k of the deposit of a fabricated run.
+DepositedBead fabricated_deposit(std::uint64_t k);
+
+inline std::string text_of(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+} // namespace ehdjet::testing
