@@ -1,0 +1,134 @@
+#include "forces.hpp"
+
+#include "ehdjet/core/csv_table.hpp"
+#include "ehdjet/core/error.hpp"
+#include "ehdjet/coulomb/error_estimate.hpp"
+#include "ehdjet/coulomb/make_solver.hpp"
+#include "ehdjet/io/text_output.hpp"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <omp.h>
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "threads.hpp"
+
+namespace ehdjet::cli {
+namespace {
+
+struct ForcesOptions {
+  std::string beads, output, solver = "direct";
+  std::optional<double> tolerance;
+  std::optional<std::size_t> threads;
+  int repeat = 1;
+  bool force = false;
+};
+
+struct Charges {
+  std::vector<double> x, y, z, q;
+  [[nodiscard]] ConstVec3View positions() const { return {x, y, z}; }
+};
+
+Charges read_charges(const std::string& file) {
+  Charges c;
+  CsvTable table(file, {"x", "y", "z", "q"}, {});
+  while (table.next_row()) {
+    c.x.push_back(table.value(0)), c.y.push_back(table.value(1));
+    c.z.push_back(table.value(2)), c.q.push_back(table.value(3));
+  }
+  if (c.q.empty()) throw InputError(file + ": no charges");
+  return c;
+}
+
+double peak_mib() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024; // Linux counts in KiB
+}
+
+double median(std::vector<double> v) {
+  const auto middle = v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2);
+  std::ranges::nth_element(v, middle);
+  if (v.size() % 2 == 1) return *middle;
+  return (*middle + *std::max_element(v.begin(), middle)) / 2;
+}
+
+void forces(const ForcesOptions& options) {
+  use_threads(options.threads);
+  const auto solver = make_coulomb_solver(options.solver);
+  if (options.tolerance && *options.tolerance < solver->accuracy().tolerance)
+    throw InputError(fmt::format("--tolerance {}: the solver \"{}\" promises no better than {}",
+                                 *options.tolerance, solver->name(),
+                                 solver->accuracy().tolerance));
+  const Charges c = read_charges(options.beads);
+  std::optional<TextOutput> output; // before the work: an existing file is refused now
+  if (!options.output.empty()) output.emplace(options.output, options.force);
+
+  const std::size_t n = c.q.size();
+  std::vector<double> fx(n), fy(n), fz(n), seconds;
+  const Vec3View force{fx, fy, fz};
+  for (int i = 0; i < options.repeat; ++i) {
+    for (auto* f : {&fx, &fy, &fz}) std::ranges::fill(*f, 0.0);
+    const auto start = std::chrono::steady_clock::now();
+    solver->add_force(c.positions(), c.q, force);
+    seconds.push_back(
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+  }
+  const double peak = peak_mib();
+  if (solver->coincident_pairs() > 0)
+    fmt::print(stderr, "ehdjet: {} pairs of charges at zero distance were skipped\n",
+               solver->coincident_pairs());
+
+  CoulombErrorSample error; // the direct sum is what errors are measured against
+  if (solver->name() != "direct") error = sampled_error(c.positions(), c.q, force);
+  if (output) {
+    output->print("fx,fy,fz\n");
+    for (std::size_t i = 0; i < n; ++i)
+      output->print("{:.17g},{:.17g},{:.17g}\n", fx[i], fy[i], fz[i]);
+    output->close();
+  }
+  fmt::print("{{\"n\":{}, \"solver\":\"{}\", \"tolerance\":{}, \"threads\":{}, \"seconds\":{:.9g}, "
+             "\"error_l2\":{:.6g}, \"error_max\":{:.6g}, \"peak_mib\":{:.1f}}}\n",
+             n, solver->name(), options.tolerance.value_or(solver->accuracy().tolerance),
+             omp_get_max_threads(), median(seconds), error.relative_l2, error.worst_per_target,
+             peak);
+}
+
+} // namespace
+
+void add_forces_command(CLI::App& app) {
+  auto options = std::make_shared<ForcesOptions>();
+  std::string solvers;
+  for (const SolverDescription& s : coulomb_solvers())
+    solvers += fmt::format("{}{}", solvers.empty() ? "" : ", ", s.name);
+  CLI::App* command = app.add_subcommand(
+      "forces", "Coulomb force on given charges; prints one JSON line on cost and error");
+  command
+      ->add_option("BEADS", options->beads, "CSV with columns x,y,z [m] and q [C], in any order")
+      ->required();
+  command->add_option("--solver", options->solver, "How the force is summed: " + solvers)
+      ->capture_default_str();
+  command
+      ->add_option("--tolerance", options->tolerance,
+                   "Relative L2 error allowed; refused if the solver does not promise it")
+      ->check(CLI::Range(0.0, 1.0));
+  add_threads_option(*command, options->threads);
+  command->add_option("--repeat", options->repeat, "Force calls; their median time is reported")
+      ->check(CLI::Range(1, 1000000))
+      ->capture_default_str();
+  command->add_option("-o,--output", options->output, "CSV of forces fx,fy,fz [N], same order");
+  command->add_flag("--force", options->force, "Overwrite the output if it exists");
+  command->callback([options] { forces(*options); });
+}
+
+} // namespace ehdjet::cli

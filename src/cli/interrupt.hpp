@@ -1,0 +1,18 @@
+#pragma once
+
+namespace ehdjet::cli {
+
+/// While it lives, SIGINT and SIGTERM are noted instead of ending the process, so that a run can
+/// stop between two steps and close its file. A second signal ends the process at once.
+class InterruptGuard {
+public:
+  InterruptGuard();
+  ~InterruptGuard();
+  InterruptGuard(const InterruptGuard&) = delete;
+  InterruptGuard& operator=(const InterruptGuard&) = delete;
+
+  /// Name of the signal that has arrived, or nullptr.
+  [[nodiscard]] static const char* signal_name();
+};
+
+} // namespace ehdjet::cli

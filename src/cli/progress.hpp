@@ -1,0 +1,31 @@
+#pragma once
+
+#include "ehdjet/simulation/simulation.hpp"
+
+#include <chrono>
+#include <deque>
+
+namespace ehdjet::cli {
+
+/// Shows how far a run is and how long it may still take: one line that is rewritten on a
+/// terminal, a plain line now and then elsewhere. Writes to standard error.
+class Progress {
+public:
+  explicit Progress(double end_time);
+  void show(const Simulation& simulation);
+  /// Leaves the terminal at the start of an empty line.
+  void finish() const;
+
+private:
+  struct Sample {
+    double wall, time; // [s], [s]
+  };
+  [[nodiscard]] double seconds() const;
+
+  bool terminal_;
+  double end_time_, interval_, next_;
+  std::deque<Sample> recent_; // the cost of a millisecond grows with the jet: only the last ones
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+} // namespace ehdjet::cli

@@ -1,0 +1,150 @@
+#include "run.hpp"
+
+#include "ehdjet/core/error.hpp"
+#include "ehdjet/io/run_file.hpp"
+#include "ehdjet/scene/read_scene.hpp"
+#include "ehdjet/simulation/build.hpp"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "interrupt.hpp"
+#include "progress.hpp"
+#include "threads.hpp"
+#include "version.hpp"
+
+namespace ehdjet::cli {
+namespace {
+
+struct RunOptions {
+  std::string scene, output;
+  std::vector<std::string> overrides;
+  std::optional<std::size_t> threads;
+  bool quiet = false, force = false;
+};
+
+/// The run was stopped from outside.
+struct Interrupted : RunError {
+  using RunError::RunError;
+};
+
+void add_observers(Simulation& simulation, RunFile& file, const SceneConfig& config) {
+  if (config.output.observables)
+    simulation.add(file.observables(*config.output.observables));
+  if (config.output.frames)
+    simulation.add(
+        file.frames(*config.output.frames, simulation.dynamics().has_stress()));
+  if (config.output.deposit) simulation.add(file.deposit());
+}
+
+std::string summary(const Simulation& s, const Scene& scene, const std::filesystem::path& file) {
+  const JetState& jet = s.jet();
+  const auto r = jet.columns().position();
+  const Vec3 tip = r[jet.links()];
+  double path = 0;
+  for (std::size_t k = 1; k < jet.beads(); ++k) path += (r[k] - r[k - 1]).norm();
+  const RunStatistics& cost = s.statistics();
+  std::string text = fmt::format(
+      "  time          {:.6g} s\n"
+      "  beads         {}\n"
+      "  tip           x = {:.6g} cm, {:.6g} cm off the axis\n"
+      "  path length   {:.6g} cm\n",
+      jet.time, jet.links(), 100 * tip.x(), 100 * std::hypot(tip.y(), tip.z()), 100 * path);
+  if (cost.landings > 0)
+    text += fmt::format("  collector     last bead landed with radius {:.5g} um at {:.6g} m/s\n",
+                        1e6 * s.ledger().collector_radius, s.ledger().impact_speed);
+  if (scene.config.nozzle || scene.config.collector)
+    text += fmt::format("  events        {} insertions, {} releases, {} landings\n",
+                        cost.insertions, cost.releases, cost.landings);
+  text += fmt::format("  cost          {} evaluations, {} steps, {} rejected, {:.2f} s\n",
+                      cost.evaluations, cost.steps, cost.rejected, cost.wall_time);
+  if (s.dynamics().coincident_pairs() > 0)
+    text += fmt::format("  warning       {} pairs of beads at zero distance were skipped\n",
+                        s.dynamics().coincident_pairs());
+  return text + fmt::format("  written to    {}\n", file.string());
+}
+
+void run(const RunOptions& options) {
+  const Scene scene = read_scene(options.scene, options.overrides);
+  use_threads(options.threads ? options.threads : scene.config.run.threads);
+  const auto simulation = build_simulation(scene);
+
+  const std::filesystem::path path =
+      options.output.empty()
+          ? std::filesystem::path(options.scene).filename().replace_extension(".h5")
+          : std::filesystem::path(options.output);
+  RunFile file(path, options.force,
+               {.scene_file = options.scene,
+                .scene_given = scene.given,
+                .scene_resolved = resolved_toml(scene.config),
+                .environment = environment()},
+               scene.config.output.flush);
+  add_observers(*simulation, file, scene.config);
+
+  const double end = scene.config.run.end_time;
+  if (!options.quiet)
+    fmt::print(stderr, "{}{}simulating {:.6g} s into {}\n", scene.config.title,
+               scene.config.title.empty() ? "" : "\n", end, path.string());
+  std::optional<Progress> progress;
+  if (!options.quiet) progress.emplace(end);
+  const InterruptGuard interrupt;
+  simulation->after_each_step([&](const Simulation& s) {
+    if (progress) progress->show(s);
+    if (const char* signal = InterruptGuard::signal_name())
+      throw Interrupted(fmt::format("stopped by {} at t = {:.9g} s", signal, s.jet().time));
+  });
+
+  const auto finish = [&](const char* status, const std::string& message) {
+    if (progress) progress->finish();
+    RunStatistics statistics = simulation->statistics();
+    statistics.coincident_pairs = simulation->dynamics().coincident_pairs();
+    file.finish(status, message, statistics, simulation->ledger());
+  };
+  const auto end_badly = [&](const char* status, const Error& e) {
+    std::string kept = fmt::format("everything up to then is in {}", path.string());
+    try {
+      finish(status, e.what());
+    } catch (const Error& also) {
+      kept = also.what();
+    }
+    throw Error(fmt::format("{}; {}", e.what(), kept), e.exit_code());
+  };
+  try {
+    simulation->run_until(end);
+  } catch (const Interrupted& e) {
+    end_badly("interrupted", e);
+  } catch (const Error& e) {
+    end_badly("failed", e);
+  }
+  finish("complete", "");
+  if (!options.quiet) fmt::print("{}", summary(*simulation, scene, path));
+}
+
+} // namespace
+
+void add_run_command(CLI::App& app) {
+  auto options = std::make_shared<RunOptions>();
+  CLI::App* command = app.add_subcommand("run", "Simulate a scene and write a run file (HDF5)");
+  command->add_option("SCENE", options->scene, "Scene file (TOML)")->required();
+  command->add_option("-o,--output", options->output,
+                      "Run file; default: the scene's name with .h5, in this folder");
+  command
+      ->add_option("--set", options->overrides, "Override a key: table.key=value (repeatable)")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
+  add_threads_option(*command, options->threads);
+  command->add_flag("--quiet", options->quiet, "Print nothing but errors");
+  command->add_flag("--force", options->force, "Overwrite the run file if it exists");
+  command->callback([options] { run(*options); });
+}
+
+} // namespace ehdjet::cli
