@@ -21,7 +21,7 @@ double ErrorScale::norm(std::span<const double> error, std::span<const double> y
       const double size = std::max(std::abs(a[i]), std::abs(b[i]));
       const double ratio = std::abs(e[i]) / (s + size);
       largest = std::max(largest, ratio);
-      squares += ratio * ratio;
+      squares += ratio * ratio + 0 * b[i]; // an infinite end would allow any error
     }
   }
   // A maximum forgets a NaN, a sum does not.
@@ -38,7 +38,7 @@ std::size_t ErrorScale::worst(std::span<const double> error, std::span<const dou
   for (std::size_t i = 0; i < error.size(); ++i) {
     const double size = std::max(std::abs(y0[i]), std::abs(y1[i]));
     const double ratio = std::abs(error[i]) / (column_scale[i / rows] + size);
-    if (!std::isfinite(ratio)) return i;
+    if (!std::isfinite(ratio + 0 * y1[i])) return i;
     if (ratio > largest) largest = ratio, worst = i;
   }
   return worst;

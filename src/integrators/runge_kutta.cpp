@@ -89,7 +89,8 @@ void RungeKutta::evaluate_end(OdeSystem& system) {
   end_known_ = true;
 }
 
-StepOutcome RungeKutta::attempt(OdeSystem& system, double t, double h, std::span<double> y) {
+StepOutcome RungeKutta::attempt(OdeSystem& system, double t, double h,
+                                std::span<double> y) {
   resize(y.size());
   y0_ = y, t_ = t, h_ = h;
   end_known_ = extra_known_ = false;
@@ -100,7 +101,8 @@ StepOutcome RungeKutta::attempt(OdeSystem& system, double t, double h, std::span
     evaluate_stage(system, i, stages[i].c, stages[i].a);
 
   WeightedVectors sum;
-  for (std::size_t j = 0; j < method_->b.size(); ++j) sum.add(k_[j].data(), h * method_->b[j]);
+  for (std::size_t j = 0; j < method_->b.size(); ++j)
+    sum.add(k_[j].data(), h * method_->b[j]);
   combine(y0_.data(), sum, y1_.data(), y1_.size());
   if (method_->error_order == 0) return {.error = is_finite(y1_) ? 0.0 : std::nan("")};
   if (error_needs_end_) evaluate_end(system);
@@ -109,7 +111,8 @@ StepOutcome RungeKutta::attempt(OdeSystem& system, double t, double h, std::span
 
 double RungeKutta::estimated_error() {
   std::array<double, 2> norms{};
-  for (std::size_t e = method_->error.size(); e-- > 0;) { // the first one last: kept in error_
+  for (std::size_t e = method_->error.size();
+       e-- > 0;) { // the first one last: kept in error_
     WeightedVectors sum;
     for (std::size_t j = 0; j < method_->error[e].size(); ++j)
       sum.add(k_[j].data(), h_ * method_->error[e][j]);
@@ -118,7 +121,7 @@ double RungeKutta::estimated_error() {
     norms[e] = scale_.norm(error_, y0_, y1_);
   }
   if (method_->error.size() == 1 || norms[0] == 0) return norms[0];
-  return norms[0] * norms[0] / std::sqrt(norms[0] * norms[0] + 0.01 * norms[1] * norms[1]);
+  return norms[0] / std::hypot(1.0, 0.1 * norms[1] / norms[0]); // no square underflows
 }
 
 std::size_t RungeKutta::worst_component() const {
@@ -140,7 +143,8 @@ void RungeKutta::prepare_dense_output(OdeSystem& system) {
 //     F1 = h k_0 - D,   F2 = 2 D - h (k_0 + k_s),   F_(3+r) = h sum_i dense[r][i] k_i
 //
 // The first line up to F2 is the cubic Hermite polynomial, which every method has.
-void RungeKutta::dense_output(double theta, std::size_t first, std::span<double> out) const {
+void RungeKutta::dense_output(double theta, std::size_t first,
+                              std::span<double> out) const {
   EHDJET_EXPECTS(end_known_ && (extra_known_ || method_->extra.empty()));
   const double x = theta, u = 1 - theta;
   const std::size_t end = method_->stages.size();
@@ -164,7 +168,9 @@ void RungeKutta::dense_output(double theta, std::size_t first, std::span<double>
 void RungeKutta::commit(std::vector<double>& y) {
   y.swap(y1_);
   if (end_known_) k_.front().swap(k_[method_->stages.size()]);
-  first_known_ = end_known_;
+  // At t_ + h_, which may differ from the next t by round-off: only a method that always knows it
+  // may use it, lest a look into the step change the jet.
+  first_known_ = end_known_ && error_needs_end_;
 }
 
 double RungeKutta::initial_step(OdeSystem& system, double t, std::span<double> y) {

@@ -45,7 +45,8 @@ ErrorScale error_scale(const Scene& scene) {
   } else {
     const JetState jet = initial_jet(scene);
     length = link_length(jet, 1);
-    for (std::size_t k = 2; k < jet.beads(); ++k) length = std::min(length, link_length(jet, k));
+    for (std::size_t k = 2; k < jet.beads(); ++k)
+      length = std::min(length, link_length(jet, k));
   }
   const double speed = c.integrator.velocity_scale;
   ErrorScale scale{.rtol = c.integrator.rtol.value_or(1),
@@ -96,8 +97,9 @@ std::unique_ptr<JetDynamics> build_dynamics(const SceneConfig& c) {
   if (c.nozzle)
     dynamics->set_nozzle(nozzle_of(*c.nozzle), {.link_length = c.nozzle->link_length});
   if (c.chain)
-    dynamics->hold({.first = c.chain->fixed == FixedEnds::first || c.chain->fixed == FixedEnds::both,
-                    .last = c.chain->fixed == FixedEnds::last || c.chain->fixed == FixedEnds::both});
+    dynamics->hold(
+        {.first = c.chain->fixed == FixedEnds::first || c.chain->fixed == FixedEnds::both,
+         .last = c.chain->fixed == FixedEnds::last || c.chain->fixed == FixedEnds::both});
   if (c.field) dynamics->add(std::make_unique<ExternalField>(field_strength(c)));
   if (c.gravity) dynamics->add(std::make_unique<Gravity>(c.gravity->acceleration));
   if (c.coulomb)
@@ -122,7 +124,8 @@ std::unique_ptr<Simulation> build_simulation(const Scene& scene) {
                     .shortest = c.integrator.min_step};
   auto simulation = std::make_unique<Simulation>(initial_jet(scene), build_dynamics(c),
                                                  std::move(integrator), limits);
-  if (c.integrator.events == EventPlacement::step_end) simulation->snap_events_to_step_ends();
+  if (c.integrator.events == EventPlacement::step_end)
+    simulation->snap_events_to_step_ends();
 
   // The order in which events at the same instant are applied (model 5).
   if (c.collector) simulation->add(std::make_unique<Landing>(c.collector->distance));

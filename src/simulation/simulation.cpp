@@ -2,12 +2,11 @@
 
 #include "ehdjet/core/error.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <fmt/format.h>
 #include <string_view>
 #include <utility>
 
@@ -18,6 +17,37 @@ constexpr double never = std::numeric_limits<double>::infinity();
 
 // An expected event lies inside the step that aims at it, not just behind its end.
 constexpr double aim_beyond = 1.02;
+
+/// Asks the dynamics for the cause when for the first time a rate is not a number.
+class FirstNan final : public OdeSystem {
+public:
+  explicit FirstNan(JetDynamics& dynamics, std::size_t beads)
+      : dynamics_(dynamics)
+      , beads_(beads) {}
+  void evaluate(double t, std::span<double> y, std::span<double> rate) override {
+    dynamics_.evaluate(t, y, rate);
+    if (!cause.empty()) return;
+    for (std::size_t i = 0; i < rate.size(); ++i)
+      if (!std::isfinite(rate[i]) || !std::isfinite(y[i])) {
+        cause = dynamics_.diagnosis(t, y, i % beads_);
+        return;
+      }
+  }
+  std::string cause;
+
+private:
+  JetDynamics& dynamics_;
+  std::size_t beads_;
+};
+
+// An observer that cannot write knows what failed, but not when.
+void show(Observer& observer, const JetSnapshot& snapshot) {
+  try {
+    observer.observe(snapshot);
+  } catch (const RunError& e) {
+    throw RunError(fmt::format("at t = {:.9g} s: {}", snapshot.time, e.what()));
+  }
+}
 
 class WallClock {
 public:
@@ -60,13 +90,18 @@ void Simulation::run_until(double end_time) {
   const double wall_before = statistics_.wall_time;
   while (jet_.time < end_time) {
     const double to_end = end_time - jet_.time;
-    const double h = attempt_step(std::min(choose_step(), to_end));
+    const double wanted = choose_step();
+    const bool last =
+        wanted >= (1 - 1e-9) * to_end; // leaves no remainder of round-off size
+    const double h = attempt_step(last ? to_end : wanted);
     const DenseStep step(jet_.time, h, jet_, *integrator_, *dynamics_);
 
     const auto found = events_located_ ? first_event(step) : std::nullopt;
     const double theta = found ? found->theta : 1.0;
     const bool reached_end = !found && h == to_end; // exactly, whatever the round-off
-    const double t1 = reached_end ? end_time : step.time(theta);
+    CompensatedSum next_time = time_;
+    next_time += theta * h;
+    const double t1 = reached_end ? end_time : double(next_time);
     show_until(step, t1);
     expected_event_ = found || !events_located_ ? never : expected_time(step);
 
@@ -75,9 +110,8 @@ void Simulation::run_until(double end_time) {
     } else {
       integrator_->commit(jet_.y);
     }
-    time_ += t1 - jet_.time;
-    jet_.time = time_;
-    if (reached_end) jet_.time = end_time, time_ = end_time;
+    time_ = reached_end ? CompensatedSum(end_time) : next_time;
+    jet_.time = t1;
     dynamics_->prescribe(jet_.time, jet_.y);
     apply_events(found ? found->index : events_.size());
     statistics_.wall_time = wall_before + clock.seconds();
@@ -85,14 +119,14 @@ void Simulation::run_until(double end_time) {
   }
   for (const auto& o : observers_)
     while (o->next_time() <= end_time)
-      o->observe({o->next_time(), std::as_const(jet_).columns(), jet_, ledger_, statistics_});
+      show(*o, {o->next_time(), std::as_const(jet_).columns(), jet_, ledger_, statistics_});
 }
 
 double Simulation::choose_step() {
   if (limits_.fixed) return *limits_.fixed;
   if (step_ == 0) {
-    step_ = limits_.initial.value_or(
-        integrator_->initial_step(*dynamics_, jet_.time, jet_.y));
+    step_ =
+        limits_.initial.value_or(integrator_->initial_step(*dynamics_, jet_.time, jet_.y));
     if (step_ == 0) step_ = never; // nothing moves
   }
   // Steps are aimed at expected events: a step that ends far behind one is mostly thrown away,
@@ -142,7 +176,8 @@ std::optional<Simulation::FoundEvent> Simulation::first_event(const DenseStep& s
 double Simulation::expected_time(const DenseStep& step) const {
   double earliest = never;
   for (const auto& e : events_)
-    if (const auto theta = e->predict(step)) earliest = std::min(earliest, step.time(*theta));
+    if (const auto theta = e->predict(step))
+      earliest = std::min(earliest, step.time(*theta));
   return earliest;
 }
 
@@ -152,7 +187,7 @@ void Simulation::show_until(const DenseStep& step, double end) {
       snapshot_.resize(jet_.y.size());
       step.state(std::clamp((t - step.t0) / step.h, 0.0, 1.0), snapshot_);
       dynamics_->prescribe(t, snapshot_);
-      o->observe({t, {snapshot_, jet_.beads()}, jet_, ledger_, statistics_});
+      show(*o, {t, {snapshot_, jet_.beads()}, jet_, ledger_, statistics_});
     }
   }
 }
@@ -202,12 +237,17 @@ void Simulation::fail(double h, const char* why) {
   static constexpr std::array<std::string_view, 7> columns{"x",  "y",  "z",     "vx",
                                                            "vy", "vz", "stress"};
   const std::size_t worst = integrator_->worst_component();
-  const std::string cause =
-      dynamics_->diagnosis(jet_.time, jet_.y, worst % jet_.beads());
-  throw RunError(fmt::format("{} t = {:.9g} s (step {:.3g} s), where {} of bead {} changes too "
-                             "fast; {}",
-                             why, jet_.time, h, columns[worst / jet_.beads()],
-                             worst % jet_.beads(), cause));
+  FirstNan search(*dynamics_, jet_.beads());
+  integrator_->restart();
+  (void)integrator_->attempt(search, jet_.time, h, jet_.y);
+  if (!search.cause.empty())
+    throw RunError(fmt::format("{} t = {:.9g} s (step {:.3g} s); {}", why, jet_.time, h,
+                               search.cause));
+  const std::string cause = dynamics_->diagnosis(jet_.time, jet_.y, worst % jet_.beads());
+  throw RunError(fmt::format(
+      "{} t = {:.9g} s (step {:.3g} s), where {} of bead {} changes too "
+      "fast; {}",
+      why, jet_.time, h, columns[worst / jet_.beads()], worst % jet_.beads(), cause));
 }
 
 } // namespace ehdjet
