@@ -10,7 +10,8 @@
 
 namespace ehdjet {
 
-CsvTable::CsvTable(const std::filesystem::path& file, std::vector<std::string_view> required,
+CsvTable::CsvTable(const std::filesystem::path& file,
+                   std::vector<std::string_view> required,
                    std::vector<std::string_view> optional)
     : name_(file.string())
     , in_(file)
@@ -21,7 +22,8 @@ CsvTable::CsvTable(const std::filesystem::path& file, std::vector<std::string_vi
 
   std::error_code error;
   if (!in_ || std::filesystem::is_directory(file, error))
-    throw InputError(name_ + ": cannot be read (" + std::generic_category().message(errno) + ")");
+    throw InputError(name_ + ": cannot be read (" + std::generic_category().message(errno)
+                     + ")");
   if (!next_line()) refuse(1, "no header line with the names of the columns");
   split();
   columns_ = fields_.size();
@@ -34,7 +36,8 @@ CsvTable::CsvTable(const std::filesystem::path& file, std::vector<std::string_vi
     position = i;
   }
   for (std::size_t c = 0; c < required_count; ++c)
-    if (!has(c)) refuse(1, "column " + std::string(wanted_[c]) + " is missing from the header");
+    if (!has(c))
+      refuse(1, "column " + std::string(wanted_[c]) + " is missing from the header");
 }
 
 bool CsvTable::next_row() {
@@ -51,12 +54,18 @@ double CsvTable::value(std::size_t column) const {
   const auto& [text, start] = fields_[position_[column]];
   double value = 0;
   const auto [end, error] = std::from_chars(text.begin(), text.end(), value);
-  const char* why = nullptr;
-  if (error == std::errc::result_out_of_range) why = "too large or too small";
-  else if (error != std::errc() || end != text.end()) why = "must be a number";
-  else if (!std::isfinite(value)) why = "must be finite";
-  if (why)
-    refuse(start, std::string(wanted_[column]) + " = \"" + std::string(text) + "\": " + why);
+  const auto refuse_value = [&](const char* quote, const char* why) {
+    refuse(start, std::string(wanted_[column])
+                      .append(" = ")
+                      .append(quote)
+                      .append(text)
+                      .append(quote)
+                      .append(": ")
+                      .append(why));
+  };
+  if (error == std::errc::result_out_of_range) refuse_value("", "too large or too small");
+  if (error != std::errc() || end != text.end()) refuse_value("\"", "must be a number");
+  if (!std::isfinite(value)) refuse_value("", "must be finite");
   return value;
 }
 
@@ -65,14 +74,15 @@ std::size_t CsvTable::start(std::size_t column) const {
 }
 
 void CsvTable::refuse(std::size_t start, const std::string& why) const {
-  throw InputError(name_ + ":" + std::to_string(line_number_) + ":" + std::to_string(start) + ": "
-                   + why);
+  throw InputError(name_ + ":" + std::to_string(line_number_) + ":" + std::to_string(start)
+                   + ": " + why);
 }
 
 bool CsvTable::next_line() {
   while (std::getline(in_, line_)) {
     ++line_number_;
-    if (line_number_ == 1 && line_.starts_with("\xef\xbb\xbf")) line_.erase(0, 3); // UTF-8 mark
+    if (line_number_ == 1 && line_.starts_with("\xef\xbb\xbf"))
+      line_.erase(0, 3); // UTF-8 mark
     if (line_.ends_with('\r')) line_.pop_back();
     if (line_.find_first_not_of(" \t") != std::string::npos && line_[0] != '#') return true;
   }

@@ -1,9 +1,8 @@
 #include "ehdjet/core/csv_table.hpp"
 #include "ehdjet/core/error.hpp"
 
-#include <fmt/format.h>
-
 #include <array>
+#include <fmt/format.h>
 #include <string_view>
 #include <vector>
 
@@ -36,11 +35,12 @@ constexpr std::size_t bead_column = columns, embryo_column = columns + 1;
 void check_order(const CsvTable& table, std::size_t expected) {
   const double bead = table.value(bead_column);
   if (bead == static_cast<double>(expected)) return;
-  table.refuse(table.start(bead_column),
-               expected == 0
-                   ? fmt::format("the first bead is {}: beads must be in order from bead 0", bead)
-                   : fmt::format("bead {} after bead {}: beads must be in order from bead 0", bead,
-                                 expected - 1));
+  table.refuse(
+      table.start(bead_column),
+      expected == 0
+          ? fmt::format("the first bead is {}: beads must be in order from bead 0", bead)
+          : fmt::format("bead {} after bead {}: beads must be in order from bead 0", bead,
+                        expected - 1));
 }
 
 } // namespace

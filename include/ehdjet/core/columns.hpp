@@ -19,17 +19,15 @@ struct Vec3Columns {
   [[nodiscard]] std::size_t size() const { return x.size(); }
   Vec3 operator[](std::size_t i) const { return {x[i], y[i], z[i]}; }
 
-  void set(std::size_t i, const Vec3& v) const
-    requires(!std::is_const_v<T>)
-  {
+  void set(std::size_t i, const Vec3& v) const requires(!std::is_const_v<T>) {
     x[i] = v.x(), y[i] = v.y(), z[i] = v.z();
   }
-  void add(std::size_t i, const Vec3& v) const
-    requires(!std::is_const_v<T>)
-  {
+  void add(std::size_t i, const Vec3& v) const requires(!std::is_const_v<T>) {
     x[i] += v.x(), y[i] += v.y(), z[i] += v.z();
   }
-  operator Vec3Columns<const T>() const { return {x, y, z}; } // a view may lose the right to write
+  operator Vec3Columns<const T>() const {
+    return {x, y, z};
+  } // a view may lose the right to write
 };
 
 using Vec3View = Vec3Columns<double>;

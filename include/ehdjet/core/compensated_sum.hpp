@@ -9,11 +9,13 @@ namespace ehdjet {
 /// source : A. Neumaier, Z. Angew. Math. Mech. 54 (1974) 39
 class CompensatedSum {
 public:
-  CompensatedSum(double start = 0) // NOLINT(google-explicit-constructor): stands for a number
+  CompensatedSum(
+      double start = 0) // NOLINT(google-explicit-constructor): stands for a number
       : sum_(start) {}
   CompensatedSum& operator+=(double term) {
     const double next = sum_ + term;
-    carry_ += std::abs(sum_) >= std::abs(term) ? (sum_ - next) + term : (term - next) + sum_;
+    carry_ +=
+        std::abs(sum_) >= std::abs(term) ? (sum_ - next) + term : (term - next) + sum_;
     sum_ = next;
     return *this;
   }

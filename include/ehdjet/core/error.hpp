@@ -42,10 +42,11 @@ public:
       : Error(message, 3) {}
 };
 
-[[noreturn]] void contract_failed(const char* kind, const char* condition, const char* file, int line);
+[[noreturn]] void contract_failed(const char* kind, const char* condition, const char* file,
+                                  int line);
 
 } // namespace ehdjet
 
 /// Preconditions of public functions, checked in every build: none stands in a loop over beads.
-#define EHDJET_EXPECTS(ok)                                                                   \
+#define EHDJET_EXPECTS(ok)                                                                 \
   ((ok) ? void(0) : ::ehdjet::contract_failed("precondition", #ok, __FILE__, __LINE__))
