@@ -1,12 +1,11 @@
 #include "cli/command.hpp"
 
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
 #include <stdexcept>
+#include <sys/wait.h>
+#include <unistd.h>
 
 namespace ehdjet::test {
 
@@ -26,11 +25,13 @@ std::string Folder::file(const std::string& name, const std::string& text) const
   return path_ / name;
 }
 
-Outcome ehdjet(const Folder& folder, const std::string& arguments, const std::string& before) {
-  const std::string command = "cd '" + folder.path().string() + "' && " + before
-                              + " '" EHDJET_COMMAND "' " + arguments
-                              + " >stdout.txt 2>stderr.txt </dev/null";
-  const int status = std::system(command.c_str()); // NOLINT(cert-env33-c): the shell is the user
+Outcome command(const Folder& folder, const std::string& arguments,
+                const std::string& before) {
+  const std::string line = "cd '" + folder.path().string() + "' && " + before
+                           + " '" EHDJET_COMMAND "' " + arguments
+                           + " >stdout.txt 2>stderr.txt </dev/null";
+  const int status =
+      std::system(line.c_str()); // NOLINT(cert-env33-c): the shell is the user
   Outcome o;
   o.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   o.out = text_of(folder / "stdout.txt"), o.err = text_of(folder / "stderr.txt");

@@ -17,7 +17,9 @@ public:
   ~Folder();
   Folder(const Folder&) = delete;
   Folder& operator=(const Folder&) = delete;
-  [[nodiscard]] std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
+  [[nodiscard]] std::filesystem::path operator/(const std::string& name) const {
+    return path_ / name;
+  }
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
   /// Writes a text file and returns its path.
   std::string file(const std::string& name, const std::string& text) const;
@@ -27,7 +29,8 @@ private:
 };
 
 /// Runs `ehdjet ARGUMENTS` in that folder through the shell, `before` in front of it.
-Outcome ehdjet(const Folder& folder, const std::string& arguments, const std::string& before = "");
+Outcome command(const Folder& folder, const std::string& arguments,
+                const std::string& before = "");
 
 std::string text_of(const std::filesystem::path& file);
 

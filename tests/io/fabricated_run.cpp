@@ -62,4 +62,24 @@ void write_run(const std::filesystem::path& path, std::size_t frames, bool with_
   file.finish("complete", "all is well", jet.statistics, jet.ledger);
 }
 
+void expect_intact(const RunReader& run, std::uint64_t flushed) {
+  EXPECT_EQ(run.scene_resolved(), "resolved = 1\n");
+  const std::size_t frames = run.has_frames() ? run.frame_times().size() : 0;
+  ASSERT_GE(frames, flushed);
+  for (std::size_t k = 0; k < frames; ++k) {
+    const FabricatedJet made = fabricated_jet(k);
+    const Frame read = run.frame(k);
+    const auto velocity = made.snapshot().columns.velocity();
+    ASSERT_EQ(read.time, made.time);
+    ASSERT_EQ(read.vz, std::vector<double>(velocity.z.begin(), velocity.z.end()));
+    ASSERT_EQ(read.charge, made.jet.charge);
+  }
+  ASSERT_GE(run.has_observables() ? run.observable("evaluations").size() : 0, flushed);
+  const DepositTable deposit = run.has_deposit() ? run.deposit() : DepositTable{};
+  ASSERT_GE(deposit.beads(), flushed);
+  for (std::size_t k = 0; k < deposit.beads(); ++k) {
+    ASSERT_EQ(deposit.volume[k], fabricated_deposit(k).bead.volume);
+  }
+}
+
 } // namespace ehdjet::testing

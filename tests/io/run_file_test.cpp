@@ -259,7 +259,7 @@ TEST(RunFile, many_flushes_do_not_make_a_large_file) {
     {
       RunFile file(folder / name, false, {}, flush_interval);
       const auto shown = file.frames(1e-5, true);
-      for (std::size_t k = 0; k < 200; ++k) shown->observe(fabricated_jet(k).snapshot());
+      for (std::size_t k = 0; k < 100; ++k) shown->observe(fabricated_jet(k).snapshot());
     }
     return fs::file_size(folder / name);
   };
