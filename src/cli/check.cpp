@@ -6,7 +6,6 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
-
 #include <memory>
 #include <string>
 #include <vector>
@@ -38,7 +37,8 @@ void add_check_command(CLI::App& app) {
       "check", "Validate a scene and say what would be simulated, without running it");
   auto* scene = command->add_option("SCENE", options->scene, "Scene file (TOML)");
   command
-      ->add_option("--set", options->overrides, "Override a key: table.key=value (repeatable)")
+      ->add_option("--set", options->overrides,
+                   "Override a key: table.key=value (repeatable)")
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
   auto* keys = command->add_flag("--keys", options->keys,

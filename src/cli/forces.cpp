@@ -6,19 +6,18 @@
 #include "ehdjet/coulomb/make_solver.hpp"
 #include "ehdjet/io/text_output.hpp"
 
-#include <CLI/CLI.hpp>
-#include <fmt/format.h>
-
 #include <omp.h>
-#include <sys/resource.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstddef>
+#include <fmt/format.h>
 #include <memory>
 #include <optional>
 #include <string>
+#include <sys/resource.h>
 #include <vector>
 
 #include "threads.hpp"
@@ -67,9 +66,9 @@ void forces(const ForcesOptions& options) {
   use_threads(options.threads);
   const auto solver = make_coulomb_solver(options.solver);
   if (options.tolerance && *options.tolerance < solver->accuracy().tolerance)
-    throw InputError(fmt::format("--tolerance {}: the solver \"{}\" promises no better than {}",
-                                 *options.tolerance, solver->name(),
-                                 solver->accuracy().tolerance));
+    throw InputError(
+        fmt::format("--tolerance {}: the solver \"{}\" promises no better than {}",
+                    *options.tolerance, solver->name(), solver->accuracy().tolerance));
   const Charges c = read_charges(options.beads);
   std::optional<TextOutput> output; // before the work: an existing file is refused now
   if (!options.output.empty()) output.emplace(options.output, options.force);
@@ -97,11 +96,12 @@ void forces(const ForcesOptions& options) {
       output->print("{:.17g},{:.17g},{:.17g}\n", fx[i], fy[i], fz[i]);
     output->close();
   }
-  fmt::print("{{\"n\":{}, \"solver\":\"{}\", \"tolerance\":{}, \"threads\":{}, \"seconds\":{:.9g}, "
+  fmt::print("{{\"n\":{}, \"solver\":\"{}\", \"tolerance\":{}, \"threads\":{}, "
+             "\"seconds\":{:.9g}, "
              "\"error_l2\":{:.6g}, \"error_max\":{:.6g}, \"peak_mib\":{:.1f}}}\n",
              n, solver->name(), options.tolerance.value_or(solver->accuracy().tolerance),
-             omp_get_max_threads(), median(seconds), error.relative_l2, error.worst_per_target,
-             peak);
+             omp_get_max_threads(), median(seconds), error.relative_l2,
+             error.worst_per_target, peak);
 }
 
 } // namespace
@@ -114,7 +114,8 @@ void add_forces_command(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
       "forces", "Coulomb force on given charges; prints one JSON line on cost and error");
   command
-      ->add_option("BEADS", options->beads, "CSV with columns x,y,z [m] and q [C], in any order")
+      ->add_option("BEADS", options->beads,
+                   "CSV with columns x,y,z [m] and q [C], in any order")
       ->required();
   command->add_option("--solver", options->solver, "How the force is summed: " + solvers)
       ->capture_default_str();
@@ -123,10 +124,13 @@ void add_forces_command(CLI::App& app) {
                    "Relative L2 error allowed; refused if the solver does not promise it")
       ->check(CLI::Range(0.0, 1.0));
   add_threads_option(*command, options->threads);
-  command->add_option("--repeat", options->repeat, "Force calls; their median time is reported")
+  command
+      ->add_option("--repeat", options->repeat,
+                   "Force calls; their median time is reported")
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
-  command->add_option("-o,--output", options->output, "CSV of forces fx,fy,fz [N], same order");
+  command->add_option("-o,--output", options->output,
+                      "CSV of forces fx,fy,fz [N], same order");
   command->add_flag("--force", options->force, "Overwrite the output if it exists");
   command->callback([options] { forces(*options); });
 }

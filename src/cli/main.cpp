@@ -1,12 +1,11 @@
 #include "ehdjet/core/error.hpp"
 
-#include <CLI/CLI.hpp>
-
-#include <fmt/format.h>
 #include <gsl/gsl_errno.h>
 
+#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
+#include <fmt/format.h>
 #include <new>
 
 #include "check.hpp"

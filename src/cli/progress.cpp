@@ -1,13 +1,11 @@
 #include "progress.hpp"
 
-#include <fmt/format.h>
-
-#include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <fmt/format.h>
 #include <string>
+#include <unistd.h>
 
 namespace ehdjet::cli {
 namespace {
@@ -47,8 +45,8 @@ void Progress::show(const Simulation& simulation) {
   const double part = t / end_time_;
   const std::string line = fmt::format(
       "{:3.0f} %  t = {:.4g} of {:.4g} s  {} beads  {} evaluations  {} elapsed, {} left",
-      100 * part, t, end_time_, simulation.jet().links(), simulation.statistics().evaluations,
-      duration(wall), duration(left));
+      100 * part, t, end_time_, simulation.jet().links(),
+      simulation.statistics().evaluations, duration(wall), duration(left));
   if (!terminal_) {
     fmt::print(stderr, "{}\n", line);
     return;

@@ -24,7 +24,8 @@ private:
 
   bool terminal_;
   double end_time_, interval_, next_;
-  std::deque<Sample> recent_; // the cost of a millisecond grows with the jet: only the last ones
+  std::deque<Sample>
+      recent_; // the cost of a millisecond grows with the jet: only the last ones
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 

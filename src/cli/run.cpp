@@ -6,12 +6,11 @@
 #include "ehdjet/simulation/build.hpp"
 
 #include <CLI/CLI.hpp>
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <filesystem>
+#include <fmt/format.h>
 #include <memory>
 #include <optional>
 #include <string>
@@ -41,27 +40,28 @@ void add_observers(Simulation& simulation, RunFile& file, const SceneConfig& con
   if (config.output.observables)
     simulation.add(file.observables(*config.output.observables));
   if (config.output.frames)
-    simulation.add(
-        file.frames(*config.output.frames, simulation.dynamics().has_stress()));
+    simulation.add(file.frames(*config.output.frames, simulation.dynamics().has_stress()));
   if (config.output.deposit) simulation.add(file.deposit());
 }
 
-std::string summary(const Simulation& s, const Scene& scene, const std::filesystem::path& file) {
+std::string summary(const Simulation& s, const Scene& scene,
+                    const std::filesystem::path& file) {
   const JetState& jet = s.jet();
   const auto r = jet.columns().position();
   const Vec3 tip = r[jet.links()];
   double path = 0;
   for (std::size_t k = 1; k < jet.beads(); ++k) path += (r[k] - r[k - 1]).norm();
   const RunStatistics& cost = s.statistics();
-  std::string text = fmt::format(
-      "  time          {:.6g} s\n"
-      "  beads         {}\n"
-      "  tip           x = {:.6g} cm, {:.6g} cm off the axis\n"
-      "  path length   {:.6g} cm\n",
-      jet.time, jet.links(), 100 * tip.x(), 100 * std::hypot(tip.y(), tip.z()), 100 * path);
+  std::string text = fmt::format("  time          {:.6g} s\n"
+                                 "  beads         {}\n"
+                                 "  tip           x = {:.6g} cm, {:.6g} cm off the axis\n"
+                                 "  path length   {:.6g} cm\n",
+                                 jet.time, jet.links(), 100 * tip.x(),
+                                 100 * std::hypot(tip.y(), tip.z()), 100 * path);
   if (cost.landings > 0)
-    text += fmt::format("  collector     last bead landed with radius {:.5g} um at {:.6g} m/s\n",
-                        1e6 * s.ledger().collector_radius, s.ledger().impact_speed);
+    text += fmt::format(
+        "  collector     last bead landed with radius {:.5g} um at {:.6g} m/s\n",
+        1e6 * s.ledger().collector_radius, s.ledger().impact_speed);
   if (scene.config.nozzle || scene.config.collector)
     text += fmt::format("  events        {} insertions, {} releases, {} landings\n",
                         cost.insertions, cost.releases, cost.landings);
@@ -133,12 +133,14 @@ void run(const RunOptions& options) {
 
 void add_run_command(CLI::App& app) {
   auto options = std::make_shared<RunOptions>();
-  CLI::App* command = app.add_subcommand("run", "Simulate a scene and write a run file (HDF5)");
+  CLI::App* command =
+      app.add_subcommand("run", "Simulate a scene and write a run file (HDF5)");
   command->add_option("SCENE", options->scene, "Scene file (TOML)")->required();
   command->add_option("-o,--output", options->output,
                       "Run file; default: the scene's name with .h5, in this folder");
   command
-      ->add_option("--set", options->overrides, "Override a key: table.key=value (repeatable)")
+      ->add_option("--set", options->overrides,
+                   "Override a key: table.key=value (repeatable)")
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
   add_threads_option(*command, options->threads);

@@ -1,8 +1,8 @@
 #include "threads.hpp"
 
-#include <CLI/CLI.hpp>
-
 #include <omp.h>
+
+#include <CLI/CLI.hpp>
 
 namespace ehdjet::cli {
 

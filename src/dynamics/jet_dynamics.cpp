@@ -2,10 +2,9 @@
 
 #include "ehdjet/core/error.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
+#include <fmt/format.h>
 #include <utility>
 
 namespace ehdjet {
@@ -86,12 +85,15 @@ std::uint64_t JetDynamics::coincident_pairs() const {
 std::string JetDynamics::diagnosis(double t, std::span<const double> y, std::size_t bead) {
   const std::size_t n = mass_.size();
   for (std::size_t i = 0; i < y.size(); ++i)
-    if (!std::isfinite(y[i])) return fmt::format("bead {}: its state is not a number", i % n);
+    if (!std::isfinite(y[i]))
+      return fmt::format("bead {}: its state is not a number", i % n);
 
   std::vector<double> state(y.begin(), y.end()), buffer(3 * n);
   const std::span<double> b(buffer);
   const Vec3View force{b.subspan(0, n), b.subspan(n, n), b.subspan(2 * n, n)};
-  const auto moves = [&](std::size_t k) { return std::ranges::find(held_, k) == held_.end(); };
+  const auto moves = [&](std::size_t k) {
+    return std::ranges::find(held_, k) == held_.end();
+  };
   set_stage(t, state);
   std::string strongest = "no force";
   double largest = 0;
@@ -112,7 +114,8 @@ std::string JetDynamics::diagnosis(double t, std::span<const double> y, std::siz
     rheology_->stress_rate(stage_, rate);
     for (std::size_t k = 0; k < n; ++k)
       if (moves(k) && !std::isfinite(rate[k]))
-        return fmt::format("bead {}: the stress rate of {} is not a number", k, rheology_->name());
+        return fmt::format("bead {}: the stress rate of {} is not a number", k,
+                           rheology_->name());
   }
   return fmt::format("bead {}: {}", bead, strongest);
 }

@@ -23,7 +23,8 @@ double recession(const DenseStep& step, const Nozzle& nozzle, std::size_t bead) 
 
 } // namespace
 
-NewBead NewBead::from(double radius, double link_length, double density, double charge_density) {
+NewBead NewBead::from(double radius, double link_length, double density,
+                      double charge_density) {
   const double volume = std::numbers::pi * radius * radius * link_length;
   return {.volume = volume, .mass = density * volume, .charge = charge_density * volume};
 }

@@ -20,7 +20,8 @@ bool Landing::due(const JetState& jet) const {
   const auto x = jet.columns().position().x;
   bool any = false;
   for_each_arrival(
-      jet, [&](std::size_t k) { return x[k] >= distance_; }, [&](std::size_t) { any = true; });
+      jet, [&](std::size_t k) { return x[k] >= distance_; },
+      [&](std::size_t) { any = true; });
   return any;
 }
 
@@ -30,8 +31,9 @@ std::optional<double> Landing::locate(const DenseStep& step) {
   for_each_arrival(
       step.jet, [&](std::size_t k) { return x1[k] >= distance_; },
       [&](std::size_t k) {
-        const auto theta =
-            first_crossing([&](double s) { return step.x(s, k) - distance_; }).value_or(1.0);
+        const auto theta = first_crossing([&](double s) {
+                             return step.x(s, k) - distance_;
+                           }).value_or(1.0);
         if (!earliest || theta < *earliest) earliest = theta, located_ = k;
       });
   return earliest;
@@ -67,7 +69,8 @@ void Landing::land(EventContext& context, std::size_t bead) const {
   jet.columns().position().x[bead] = distance_;
   const double radius = link_radius(jet.volume[bead], link_length(jet, bead));
   const LandedBead landed{.bead = bead, .time = jet.time, .radius = radius};
-  jet.landed.insert(std::ranges::upper_bound(jet.landed, bead, {}, &LandedBead::bead), landed);
+  jet.landed.insert(std::ranges::upper_bound(jet.landed, bead, {}, &LandedBead::bead),
+                    landed);
   context.ledger.impact_speed = jet.columns().velocity()[bead].norm();
   context.ledger.collector_radius = radius;
   ++context.statistics.landings;
@@ -77,12 +80,12 @@ void Landing::remove_leading(EventContext& context) const {
   JetState& jet = context.jet;
   const std::size_t leading = jet.links();
   const LandedBead& landed = jet.landed.back();
-  const DepositedBead deposited{.time = landed.time,
-                                .removal_time = jet.time,
-                                .bead = bead_at(jet, leading),
-                                .landing_radius = landed.radius,
-                                .radius =
-                                    link_radius(jet.volume[leading], link_length(jet, leading))};
+  const DepositedBead deposited{
+      .time = landed.time,
+      .removal_time = jet.time,
+      .bead = bead_at(jet, leading),
+      .landing_radius = landed.radius,
+      .radius = link_radius(jet.volume[leading], link_length(jet, leading))};
   Ledger& ledger = context.ledger;
   ++ledger.removed_beads;
   ledger.removed_mass += deposited.bead.mass;

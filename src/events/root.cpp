@@ -28,7 +28,8 @@ std::optional<double> first_crossing(const std::function<double(double)>& g) {
 
   thread_local const std::unique_ptr<gsl_root_fsolver, FreeSolver> solver(
       gsl_root_fsolver_alloc(gsl_root_fsolver_brent));
-  gsl_function f{.function = call, .params = const_cast<std::function<double(double)>*>(&g)};
+  gsl_function f{.function = call,
+                 .params = const_cast<std::function<double(double)>*>(&g)};
   if (gsl_root_fsolver_set(solver.get(), &f, 0, 1) != GSL_SUCCESS)
     throw RunError("the root of an event function could not be bracketed");
   constexpr int most_iterations = 200; // bisection alone needs about 50

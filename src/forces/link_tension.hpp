@@ -17,7 +17,8 @@ inline void add_link_tension(const Links& links, std::span<const double> tension
   const auto component = [&](const double* d, double* f) {
     f[0] += t[links.first] * d[links.first]; // the upstream end of the first link
 #pragma omp simd
-    for (std::size_t k = links.first; k <= links.last; ++k) f[k] += t[k + 1] * d[k + 1] - t[k] * d[k];
+    for (std::size_t k = links.first; k <= links.last; ++k)
+      f[k] += t[k + 1] * d[k + 1] - t[k] * d[k];
   };
   component(links.dx.data(), force.x.data());
   component(links.dy.data(), force.y.data());

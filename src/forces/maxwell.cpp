@@ -19,7 +19,8 @@ void Maxwell::add_force(const Stage& stage, Vec3View force) {
   tension_per_length_.assign(links.length.size(), 0.0);
   double* t = tension_per_length_.data();
 #pragma omp simd
-  for (std::size_t k = links.first; k <= links.last; ++k) t[k] = v[k] * sigma[k] / (l[k] * l[k]);
+  for (std::size_t k = links.first; k <= links.last; ++k)
+    t[k] = v[k] * sigma[k] / (l[k] * l[k]);
   add_link_tension(links, tension_per_length_, force);
 }
 
@@ -32,7 +33,8 @@ void Maxwell::stress_rate(const Stage& stage, std::span<double> rate) {
   double* out = rate.data();
   const double g = elastic_modulus_, relaxation = relaxation_rate_;
   const auto link = [=](std::size_t k, std::size_t upstream) {
-    const double stretching = (vx[k] - vx[upstream]) * dx[k] + (vy[k] - vy[upstream]) * dy[k]
+    const double stretching = (vx[k] - vx[upstream]) * dx[k]
+                              + (vy[k] - vy[upstream]) * dy[k]
                               + (vz[k] - vz[upstream]) * dz[k];
     out[k] = g * stretching / (l[k] * l[k]) - relaxation * sigma[k];
   };

@@ -1,10 +1,10 @@
 #include "ehdjet/forces/surface_tension.hpp"
 
-#include "link_tension.hpp"
-
 #include <cmath>
 #include <cstddef>
 #include <numbers>
+
+#include "link_tension.hpp"
 
 namespace ehdjet {
 namespace {
@@ -14,7 +14,8 @@ struct Curvature {
   double x, y, z;
 };
 
-inline Curvature curvature(double ux, double uy, double uz, double wx, double wy, double wz) {
+inline Curvature curvature(double ux, double uy, double uz, double wx, double wy,
+                           double wz) {
   const double uu = ux * ux + uy * uy + uz * uz, ww = wx * wx + wy * wy + wz * wz;
   const double px = uy * wz - uz * wy, py = uz * wx - ux * wz, pz = ux * wy - uy * wx;
   const double bx = uu * wx - ww * ux, by = uu * wy - ww * uy, bz = uu * wz - ww * uz;
@@ -37,7 +38,8 @@ void BendingSurfaceTension::add_force(const Stage& stage, Vec3View force) {
   const double *l = links.length.data(), *dx = links.dx.data(), *dy = links.dy.data(),
                *dz = links.dz.data(), *v = stage.volume.data();
   radius_.resize(links.length.size());
-  double *a = radius_.data(), *fx = force.x.data(), *fy = force.y.data(), *fz = force.z.data();
+  double *a = radius_.data(), *fx = force.x.data(), *fy = force.y.data(),
+         *fz = force.z.data();
 #pragma omp simd
   for (std::size_t k = links.first; k <= links.last; ++k)
     a[k] = std::sqrt(v[k] / (std::numbers::pi * l[k]));

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <fcntl.h>
 #include <iterator>
+#include <new>
 #include <sys/stat.h>
 #include <unistd.h>
 #include <utility>
@@ -67,7 +68,7 @@ int FileDriver::Rewrite::rank() const {
     return 2;
   case H5FD_MEM_BTREE: {
     const bool is_index = bytes.size() > 5 && std::memcmp(bytes.data(), "TREE", 4) == 0;
-    return 3 + (is_index ? bytes[5] : 0);
+    return 3 + 255 - (is_index ? bytes[5] : 0);
   }
   default:
     return 1000;
@@ -188,7 +189,11 @@ struct FileDriver::Callbacks {
     if ((flags & H5F_ACC_TRUNC) != 0) how |= O_TRUNC;
     const int descriptor = ::open(name, how, 0666); // NOLINT: POSIX declares it so
     if (descriptor < 0) return nullptr;
-    auto* file = new FileDriver{};
+    auto* file = new (std::nothrow) FileDriver{};
+    if (file == nullptr) {
+      ::close(descriptor);
+      return nullptr;
+    }
     struct stat status {};
     file->descriptor_ = descriptor;
     file->ever_committed_ = ::fstat(descriptor, &status) == 0 && status.st_size > 0;

@@ -37,7 +37,7 @@ private:
 ///          one with some data sets still at their old length; so does a full disk
 /// cost   : the rewritten parts in memory, a few hundred bytes per data set
 /// errors : survives the end of the process, not that of the machine (no fsync)
-/// checked: a_killed_run_keeps_every_frame_up_to_its_last_flush
+/// checked: dying_within_any_write_of_a_small_run_keeps_the_last_flush
 class FileDriver : public H5FD_t {
 public:
   /// File access properties that select this driver for H5Fcreate and H5Fopen; the caller closes.

@@ -269,8 +269,9 @@ std::string observables(const RunReader& run, std::optional<double> frame_time,
         t, grey);
   }
   for (std::size_t i = 0; i < all.size(); ++i) {
+    const std::size_t row = i / per_row;
     const double left = 0.03 + width * static_cast<double>(i % per_row);
-    const double ceiling = top - height * static_cast<double>(i / per_row);
+    const double ceiling = top - height * static_cast<double>(row);
     s += draw(
         all[i], time, unit,
         {left + 0.04, left + width - 0.005, ceiling - height + 0.075, ceiling - 0.045});

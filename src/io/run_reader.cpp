@@ -57,7 +57,7 @@ struct RunReader::Impl {
   hsize_t common_length(const std::string& group) {
     hsize_t common = std::numeric_limits<hsize_t>::max();
     for (const std::string& name : names_in(file, group.c_str())) {
-      common = std::min(common, hdf5::length(data_set(group + "/" + name)));
+      common = std::min(common, hdf5::length(data_set(fmt::format("{}/{}", group, name))));
     }
     return common;
   }

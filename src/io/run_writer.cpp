@@ -73,7 +73,7 @@ fs::path checked(const fs::path& path, bool overwrite) {
     }
     return fs::canonical(path); // through links
   }
-  const fs::path absolute = fs::absolute(path);
+  fs::path absolute = fs::absolute(path);
   if (!fs::is_directory(absolute.parent_path(), ignored)) {
     throw InputError(fmt::format("cannot create {}: there is no folder {}", path.string(),
                                  absolute.parent_path().string()));

@@ -25,7 +25,8 @@ auto at_offset(std::vector<double>& v, std::size_t i) {
 } // namespace
 
 bool JetState::is_landed(std::size_t bead) const {
-  return std::ranges::any_of(landed, [bead](const LandedBead& l) { return l.bead == bead; });
+  return std::ranges::any_of(landed,
+                             [bead](const LandedBead& l) { return l.bead == bead; });
 }
 
 void insert_bead(JetState& jet, std::size_t at, const Bead& bead) {
@@ -59,7 +60,8 @@ void remove_leading_bead(JetState& jet) {
   const std::size_t columns = jet.y.size() / n;
   for (std::size_t c = 1; c < columns; ++c) {
     const auto column = at_offset(jet.y, c * n);
-    std::move(column, column + static_cast<std::ptrdiff_t>(n - 1), at_offset(jet.y, c * (n - 1)));
+    std::move(column, column + static_cast<std::ptrdiff_t>(n - 1),
+              at_offset(jet.y, c * (n - 1)));
   }
   jet.y.resize(columns * (n - 1));
   jet.mass.pop_back(), jet.charge.pop_back(), jet.volume.pop_back();

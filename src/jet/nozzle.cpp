@@ -22,7 +22,8 @@ Vec3 Embryo::position(const Vec3& nozzle, const Vec3& bead) const {
 }
 
 double Embryo::charge_fraction(double d) const {
-  const double ramp = (d - creation_distance()) / (release_distance() - creation_distance());
+  const double ramp =
+      (d - creation_distance()) / (release_distance() - creation_distance());
   return (1 - std::cos(std::numbers::pi * std::clamp(ramp, 0.0, 1.0))) / 2;
 }
 

@@ -32,7 +32,9 @@ public:
   void add(std::unique_ptr<ForceTerm> term) { terms_.push_back(std::move(term)); }
   void set_rheology(std::unique_ptr<Rheology> rheology);
   /// Bead 0 is the nozzle and beads are born there. Without it bead 0 is an ordinary bead.
-  void set_nozzle(const Nozzle& nozzle, const Embryo& embryo) { nozzle_ = {nozzle, embryo}; }
+  void set_nozzle(const Nozzle& nozzle, const Embryo& embryo) {
+    nozzle_ = {nozzle, embryo};
+  }
   void hold(HeldEnds ends) { ends_ = ends; }
 
   /// Must be called after the chain (not merely its state) has changed.
@@ -46,12 +48,15 @@ public:
   [[nodiscard]] std::uint64_t evaluations() const { return evaluations_; }
   /// Pairs of beads at zero distance that were skipped so far, all evaluations together.
   [[nodiscard]] std::uint64_t coincident_pairs() const;
-  [[nodiscard]] const std::vector<std::unique_ptr<ForceTerm>>& terms() const { return terms_; }
+  [[nodiscard]] const std::vector<std::unique_ptr<ForceTerm>>& terms() const {
+    return terms_;
+  }
 
   /// Why a step of size h failed near this state, for a message to the user: the first bead and
   /// term whose force or rate is not a number or, if there is none, the term that pulls
   /// hardest at `bead`.
-  [[nodiscard]] std::string diagnosis(double t, std::span<const double> y, std::size_t bead);
+  [[nodiscard]] std::string diagnosis(double t, std::span<const double> y,
+                                      std::size_t bead);
 
 private:
   struct Source {
@@ -60,15 +65,16 @@ private:
   };
   void set_stage(double t, std::span<double> y);
 
-  std::vector<std::unique_ptr<ForceTerm>> terms_; // the rheology, which also has a force, last
+  std::vector<std::unique_ptr<ForceTerm>>
+      terms_; // the rheology, which also has a force, last
   Rheology* rheology_ = nullptr;
   std::optional<Source> nozzle_;
   HeldEnds ends_;
 
   Stage stage_;
   std::vector<double> mass_, inverse_mass_, volume_;
-  std::vector<double> charge_;    // as they act; an embryo's is part of its full charge
-  double embryo_charge_ = 0;      // its full charge [C]
+  std::vector<double> charge_; // as they act; an embryo's is part of its full charge
+  double embryo_charge_ = 0;   // its full charge [C]
   std::vector<LandedBead> landed_;
   std::vector<std::size_t> held_; // beads with rate zero
   bool has_embryo_ = false;

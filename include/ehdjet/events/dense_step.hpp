@@ -25,9 +25,15 @@ public:
 
   [[nodiscard]] double time(double theta) const { return t0 + theta * h; }
   /// Position and velocity of a bead that is integrated (not the nozzle, not an embryo).
-  [[nodiscard]] Vec3 position(double theta, std::size_t bead) const { return vector(theta, 0, bead); }
-  [[nodiscard]] Vec3 velocity(double theta, std::size_t bead) const { return vector(theta, 3, bead); }
-  [[nodiscard]] double x(double theta, std::size_t bead) const { return component(theta, bead); }
+  [[nodiscard]] Vec3 position(double theta, std::size_t bead) const {
+    return vector(theta, 0, bead);
+  }
+  [[nodiscard]] Vec3 velocity(double theta, std::size_t bead) const {
+    return vector(theta, 3, bead);
+  }
+  [[nodiscard]] double x(double theta, std::size_t bead) const {
+    return component(theta, bead);
+  }
   /// x of all beads at t0 + h.
   [[nodiscard]] std::span<const double> end_x() const {
     return integrator_.end_state().first(jet.beads());

@@ -13,7 +13,8 @@ struct NewBead {
   double mass = 0;   ///< m0 [kg]
   double charge = 0; ///< q0 [C]
 
-  static NewBead from(double radius, double link_length, double density, double charge_density);
+  static NewBead from(double radius, double link_length, double density,
+                      double charge_density);
 };
 
 /// Velocity that a released bead starts with (model 4.2).
@@ -38,7 +39,8 @@ public:
   [[nodiscard]] bool restarts_motion() const override { return true; }
 
 private:
-  [[nodiscard]] double excess(const DenseStep& step, double theta) const; // [m], >= 0: happens
+  [[nodiscard]] double excess(const DenseStep& step,
+                              double theta) const; // [m], >= 0: happens
 
   Nozzle nozzle_;
   Embryo embryo_;

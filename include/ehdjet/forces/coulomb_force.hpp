@@ -18,7 +18,9 @@ public:
     coincident_pairs_ += solver_->coincident_pairs();
   }
   [[nodiscard]] std::string_view name() const override { return "Coulomb"; }
-  [[nodiscard]] std::uint64_t coincident_pairs() const override { return coincident_pairs_; }
+  [[nodiscard]] std::uint64_t coincident_pairs() const override {
+    return coincident_pairs_;
+  }
 
 private:
   std::unique_ptr<CoulombSolver> solver_;

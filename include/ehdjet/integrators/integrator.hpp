@@ -30,7 +30,8 @@ public:
   [[nodiscard]] virtual int error_order() const = 0;
 
   /// Tries y(t) -> y(t + h). `y` must stay where it is until the step is committed.
-  virtual StepOutcome attempt(OdeSystem& system, double t, double h, std::span<double> y) = 0;
+  virtual StepOutcome attempt(OdeSystem& system, double t, double h,
+                              std::span<double> y) = 0;
   /// The state at t + h of the last attempt.
   [[nodiscard]] virtual std::span<const double> end_state() const = 0;
   /// Component where the last attempt's error was largest or not a number.
@@ -39,7 +40,8 @@ public:
   /// Must be called once before `dense_output` of an attempt: evaluates what that still needs.
   virtual void prepare_dense_output(OdeSystem& system) = 0;
   /// Components [first, first + out.size()) at t + theta h, 0 <= theta <= 1.
-  virtual void dense_output(double theta, std::size_t first, std::span<double> out) const = 0;
+  virtual void dense_output(double theta, std::size_t first,
+                            std::span<double> out) const = 0;
 
   /// Makes the end of the last attempt the state: swaps it into `y`.
   virtual void commit(std::vector<double>& y) = 0;

@@ -33,7 +33,8 @@ public:
 
 private:
   void resize(std::size_t n);
-  void evaluate_stage(OdeSystem& system, std::size_t k, double c, const std::vector<double>& a);
+  void evaluate_stage(OdeSystem& system, std::size_t k, double c,
+                      const std::vector<double>& a);
   void evaluate_end(OdeSystem& system);
   double estimated_error();
 

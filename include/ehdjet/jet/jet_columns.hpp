@@ -18,11 +18,19 @@ struct JetColumns {
   std::span<T> flat;
   std::size_t beads = 0;
 
-  [[nodiscard]] std::span<T> column(std::size_t c) const { return flat.subspan(c * beads, beads); }
-  [[nodiscard]] Vec3Columns<T> position() const { return {column(0), column(1), column(2)}; }
-  [[nodiscard]] Vec3Columns<T> velocity() const { return {column(3), column(4), column(5)}; }
+  [[nodiscard]] std::span<T> column(std::size_t c) const {
+    return flat.subspan(c * beads, beads);
+  }
+  [[nodiscard]] Vec3Columns<T> position() const {
+    return {column(0), column(1), column(2)};
+  }
+  [[nodiscard]] Vec3Columns<T> velocity() const {
+    return {column(3), column(4), column(5)};
+  }
   [[nodiscard]] bool has_stress() const { return flat.size() > kinematic_columns * beads; }
-  [[nodiscard]] std::span<T> stress() const { return has_stress() ? column(6) : std::span<T>{}; }
+  [[nodiscard]] std::span<T> stress() const {
+    return has_stress() ? column(6) : std::span<T>{};
+  }
   operator JetColumns<const T>() const { return {flat, beads}; }
 
   static constexpr std::size_t kinematic_columns = 6;

@@ -24,13 +24,13 @@ struct LandedBead {
 /// While `has_embryo`, bead 1 is an embryo: it lies on the segment from bead 0 to bead 2,
 /// which are neighbours for every local force (model 4.1).
 struct JetState {
-  double time = 0;                    ///< [s]
-  std::vector<double> y;              ///< what the integrator advances
-  std::vector<double> mass;           ///< [kg]
-  std::vector<double> charge;         ///< [C], the full charge also for an embryo
-  std::vector<double> volume;         ///< [m^3]
+  double time = 0;            ///< [s]
+  std::vector<double> y;      ///< what the integrator advances
+  std::vector<double> mass;   ///< [kg]
+  std::vector<double> charge; ///< [C], the full charge also for an embryo
+  std::vector<double> volume; ///< [m^3]
   bool has_embryo = false;
-  std::vector<LandedBead> landed;     ///< still in the chain, ascending bead index
+  std::vector<LandedBead> landed; ///< still in the chain, ascending bead index
 
   [[nodiscard]] std::size_t beads() const { return mass.size(); }
   [[nodiscard]] std::size_t links() const { return beads() - 1; }

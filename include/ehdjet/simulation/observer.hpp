@@ -15,9 +15,9 @@ namespace ehdjet {
 
 /// The jet at one instant, prescribed beads (nozzle, embryo) in their places.
 struct JetSnapshot {
-  double time = 0;                   ///< [s]
-  JetColumns<const double> columns;  ///< at `time`
-  const JetState& jet;               ///< the chain the columns belong to; not its y
+  double time = 0;                  ///< [s]
+  JetColumns<const double> columns; ///< at `time`
+  const JetState& jet;              ///< the chain the columns belong to; not its y
   const Ledger& ledger;
   const RunStatistics& statistics;
 };
@@ -29,7 +29,9 @@ public:
   virtual ~Observer() = default;
 
   /// Next time at which this observer wants to see the jet; infinity for never [s].
-  [[nodiscard]] virtual double next_time() const { return std::numeric_limits<double>::infinity(); }
+  [[nodiscard]] virtual double next_time() const {
+    return std::numeric_limits<double>::infinity();
+  }
   /// The jet at `next_time()`, after any event at that same time.
   virtual void observe(const JetSnapshot& /*snapshot*/) {}
   /// A bead has left the chain.

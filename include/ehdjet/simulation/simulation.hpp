@@ -17,8 +17,9 @@ namespace ehdjet {
 
 /// How long a step may be.
 struct StepLimits {
-  std::optional<double> fixed;   ///< dt of every step, for methods without error estimate too [s]
-  std::optional<double> initial; ///< first attempt [s]
+  std::optional<double>
+      fixed; ///< dt of every step, for methods without error estimate too [s]
+  std::optional<double> initial;                            ///< first attempt [s]
   double longest = std::numeric_limits<double>::infinity(); ///< [s]
   double shortest = 1e-15; ///< below this the run stops [s]
 };
@@ -35,7 +36,9 @@ public:
 
   /// Events at the same instant are applied in the order in which they were added.
   void add(std::unique_ptr<Event> event);
-  void add(std::unique_ptr<Observer> observer) { observers_.push_back(std::move(observer)); }
+  void add(std::unique_ptr<Observer> observer) {
+    observers_.push_back(std::move(observer));
+  }
   /// Apply events at the end of the step that contains them, as the paper did: first order in
   /// the step size, whatever the method.
   void snap_events_to_step_ends() { events_located_ = false; }
@@ -84,7 +87,7 @@ private:
   CompensatedSum time_;
   double step_ = 0; // what to attempt next; 0: nothing known yet [s]
   double expected_event_ = std::numeric_limits<double>::infinity(); // [s]
-  std::vector<double> restart_step_;       // per event: a step that suits the motion after it [s]
+  std::vector<double> restart_step_; // per event: a step that suits the motion after it [s]
   std::optional<std::size_t> after_event_; // the event that the next step follows
   std::vector<double> snapshot_;           // a state inside a step
   std::vector<DepositedBead> deposited_;
