@@ -16,17 +16,18 @@
 #include "version.hpp"
 
 // Exit codes: 0 done, 1 the run failed, 2 the input is wrong, 3 a bug in ehdjet.
-int main(int argc, char** argv) {
-  gsl_set_error_handler_off(); // its return codes are checked instead
+int main(int argc,
+         char** argv) { // NOLINT(bugprone-exception-escape): of the handlers' own text
   CLI::App app{"ehdjet: electrically charged jets as chains of beads", "ehdjet"};
-  app.require_subcommand(1);
-  app.set_version_flag("--version", ehdjet::cli::version_text);
-  ehdjet::cli::add_run_command(app);
-  ehdjet::cli::add_check_command(app);
-  ehdjet::cli::add_forces_command(app);
-  ehdjet::cli::add_export_command(app);
-  ehdjet::cli::add_plot_command(app);
   try {
+    gsl_set_error_handler_off(); // its return codes are checked instead
+    app.require_subcommand(1);
+    app.set_version_flag("--version", ehdjet::cli::version_text);
+    ehdjet::cli::add_run_command(app);
+    ehdjet::cli::add_check_command(app);
+    ehdjet::cli::add_forces_command(app);
+    ehdjet::cli::add_export_command(app);
+    ehdjet::cli::add_plot_command(app);
     app.parse(argc, argv); // runs the subcommand
   } catch (const CLI::ParseError& e) {
     return app.exit(e) == 0 ? 0 : 2;

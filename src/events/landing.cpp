@@ -5,16 +5,13 @@
 #include <algorithm>
 
 namespace ehdjet {
-namespace {
-
-// Beads 1 (2 behind an embryo) to n that have not landed and for which `reached` is true.
+// Beads that have not landed and for which `reached` is true. An embryo never lands.
 template <class Reached, class Found>
-void for_each_arrival(const JetState& jet, const Reached& reached, const Found& found) {
-  for (std::size_t k = jet.first(); k < jet.beads(); ++k)
+void Landing::for_each_arrival(const JetState& jet, const Reached& reached,
+                               const Found& found) const {
+  for (std::size_t k = jet.has_embryo ? jet.first() : first_bead_; k < jet.beads(); ++k)
     if (reached(k) && !jet.is_landed(k)) found(k);
 }
-
-} // namespace
 
 bool Landing::due(const JetState& jet) const {
   const auto x = jet.columns().position().x;
@@ -27,6 +24,7 @@ bool Landing::due(const JetState& jet) const {
 
 std::optional<double> Landing::locate(const DenseStep& step) {
   const auto x1 = step.end_x();
+  located_.reset();
   std::optional<double> earliest;
   for_each_arrival(
       step.jet, [&](std::size_t k) { return x1[k] >= distance_; },
@@ -49,8 +47,8 @@ std::optional<double> Landing::predict(const DenseStep& step) const {
 
 void Landing::apply(EventContext& context) {
   JetState& jet = context.jet;
-  if (located_ != 0) {
-    land(context, located_);
+  if (located_) {
+    land(context, *located_);
   } else {
     const auto x = jet.columns().position().x;
     std::vector<std::size_t> arrived;
@@ -59,7 +57,7 @@ void Landing::apply(EventContext& context) {
         [&](std::size_t k) { arrived.push_back(k); });
     for (const std::size_t k : arrived) land(context, k);
   }
-  located_ = 0;
+  located_.reset();
   while (jet.links() > 1 && jet.is_landed(jet.links()) && jet.is_landed(jet.links() - 1))
     remove_leading(context);
 }
@@ -67,7 +65,8 @@ void Landing::apply(EventContext& context) {
 void Landing::land(EventContext& context, std::size_t bead) const {
   JetState& jet = context.jet;
   jet.columns().position().x[bead] = distance_;
-  const double radius = link_radius(jet.volume[bead], link_length(jet, bead));
+  const std::size_t link = bead > 0 ? bead : jet.first(); // bead 0 owns none
+  const double radius = link_radius(jet.volume[link], link_length(jet, link));
   const LandedBead landed{.bead = bead, .time = jet.time, .radius = radius};
   jet.landed.insert(std::ranges::upper_bound(jet.landed, bead, {}, &LandedBead::bead),
                     landed);

@@ -128,7 +128,11 @@ std::unique_ptr<Simulation> build_simulation(const Scene& scene) {
     simulation->snap_events_to_step_ends();
 
   // The order in which events at the same instant are applied (model 5).
-  if (c.collector) simulation->add(std::make_unique<Landing>(c.collector->distance));
+  const bool first_is_free =
+      c.chain && c.chain->fixed != FixedEnds::first && c.chain->fixed != FixedEnds::both;
+  if (c.collector)
+    simulation->add(
+        std::make_unique<Landing>(c.collector->distance, first_is_free ? 0 : 1));
   if (c.nozzle) {
     const Embryo embryo{.link_length = c.nozzle->link_length};
     const auto velocity = c.nozzle->insertion_velocity == InsertionVelocity::half

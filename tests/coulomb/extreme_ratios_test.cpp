@@ -34,6 +34,20 @@ TEST_P(ExtremeRatios, beads_that_almost_coincide_repel_as_coulomb_says) {
   }
 }
 
+// From ordinary to close in small steps along each axis: no pair is summed twice or lost where
+// one way of summing takes over from the other.
+TEST_P(ExtremeRatios, no_pair_is_lost_between_near_and_too_near) {
+  for (int step = 0; step < 120; ++step) {
+    Chain chain = random_chain(21, 1, 0, static_cast<unsigned>(step));
+    for (const std::size_t i : {2U, 3U, 20U}) {
+      Vec3 r = Vec3::Zero();
+      r[step % 3] = std::pow(10, -31 - step / 20.0) * static_cast<double>(i);
+      chain.set(i, r);
+    }
+    EXPECT_LE(worst_error(chain, force_on(chain, *solver)), tolerance()) << step;
+  }
+}
+
 // q_i q_j is below the smallest double, the force of neighbours 1e-150 m apart is not.
 TEST_P(ExtremeRatios, charges_whose_product_underflows_still_repel) {
   Chain chain = random_chain(50, 2, 1);
@@ -66,12 +80,15 @@ TEST_P(ExtremeRatios, subnormal_coordinates_and_charges_give_no_nan) {
   for (std::size_t i = 0; i < chain.size(); ++i) EXPECT_FALSE(force[i].hasNaN()) << i;
 }
 
-TEST_P(ExtremeRatios, beads_without_charge_feel_nothing) {
+TEST_P(ExtremeRatios, beads_without_charge_feel_and_exert_nothing) {
   Chain chain = random_chain(20, 0, 0);
-  chain.q.assign(20, 0.0);
-  chain.set(1, chain.r()[0] + Vec3(0, 0, 1e-320)); // where q/r would be 0 inf
-  const Force force = force_on(chain, *solver);
-  for (std::size_t i = 0; i < chain.size(); ++i) EXPECT_EQ(force[i].norm(), 0.0) << i;
+  for (const double charge : {0.0, 1.0}) {
+    chain.q.assign(20, 0.0);
+    chain.q[0] = charge;
+    chain.set(1, chain.r()[0] + Vec3(0, 0, 1e-320)); // where q/r would be infinite
+    const Force force = force_on(chain, *solver);
+    for (std::size_t i = 0; i < chain.size(); ++i) EXPECT_EQ(force[i].norm(), 0.0) << i;
+  }
 }
 
 // Three beads on one point are three pairs; two on another, in other tiles, a fourth.

@@ -29,6 +29,21 @@ TEST_P(SolverLaws, opposite_charges_attract) {
   EXPECT_LE((force_on(pair, *solver)[1] + k_C * along).norm(), 1e-14 * k_C);
 }
 
+// The kernels correct an estimate of 1/r whose error depends on the leading digits of r^2:
+// those of 4000 distances over two binades. A sum over many pairs would average them out.
+TEST_P(SolverLaws, a_pair_is_exact_to_round_off_whatever_its_distance) {
+  Chain pair(2);
+  for (int k = 0; k < 4000; ++k) {
+    const double d = std::exp2(k / 2000.0);
+    pair.x[1] = d;
+    const long double exact =
+        static_cast<long double>(k_C) / (static_cast<long double>(d) * d);
+    const double error = static_cast<double>(force_on(pair, *solver).x[1] / exact - 1);
+    const double allowed = std::max(8 * eps, solver->accuracy().tolerance); // 8: operations
+    ASSERT_LE(std::abs(error), allowed) << d;
+  }
+}
+
 // F = q^2/(4 R^2) sum_{k=1}^{n-1} 1/sin(pi k/n), purely radial and the same for all.
 TEST_P(SolverLaws, a_ring_pushes_each_bead_outwards_by_the_cosecant_sum) {
   struct Row {

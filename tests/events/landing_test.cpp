@@ -153,6 +153,26 @@ TEST(Landing, at_step_ends_freezes_all_that_have_passed_the_collector) {
 }
 
 // A Maxwell link below an interior landed bead stretches by the lower bead's velocity alone.
+// Bead 0 of a chain is a bead like any other unless it is held; the nozzle never lands.
+TEST(Landing, a_free_bead_0_lands_and_a_held_one_does_not) {
+  const std::vector<Start> both_arrive{{h - 0.002, 2, 1}, {h - 0.003, 6, 2}};
+  Scene scene = flight(both_arrive);
+  scene.config.chain->fixed = FixedEnds::none;
+  auto simulation = build_simulation(scene);
+  simulation->run_until(3e-3);
+  const JetState& jet = simulation->jet();
+  ASSERT_EQ(jet.landed.size(), 2U);
+  EXPECT_EQ(jet.landed[0].bead, 0U);
+  EXPECT_NEAR(jet.landed[0].time, 1e-3, 1e-15);
+  EXPECT_EQ(jet.columns().position()[0].x(), h);
+  EXPECT_EQ(jet.beads(), 2U); // a link needs its two ends
+
+  auto held = build_simulation(flight(both_arrive));
+  held->run_until(3e-3);
+  ASSERT_EQ(held->jet().landed.size(), 1U);
+  EXPECT_EQ(held->jet().landed[0].bead, 1U);
+}
+
 TEST(Landing, the_link_below_a_landed_interior_bead_sees_it_at_rest) {
   Scene scene = flight(overtaking);
   scene.config.viscoelasticity = ViscoelasticityConfig{

@@ -50,6 +50,7 @@ void die_within_every_write(const std::filesystem::path& path, Check&& check,
   for (std::uint64_t writes = 1; !survived; ++writes) {
     SCOPED_TRACE("write " + std::to_string(writes));
     const pid_t child = ::fork();
+    ASSERT_GE(child, 0);
     if (child == 0) {
       writes_to_live = writes;
       action();
