@@ -51,7 +51,8 @@ bool CsvTable::next_row() {
 
 double CsvTable::value(std::size_t column) const {
   if (!has(column)) return 0;
-  const auto& [text, start] = fields_[position_[column]];
+  const std::string_view text = fields_[position_[column]].text;
+  const std::size_t start = fields_[position_[column]].start;
   double value = 0;
   const auto [end, error] = std::from_chars(text.begin(), text.end(), value);
   const auto refuse_value = [&](const char* quote, const char* why) {

@@ -183,7 +183,8 @@ double Simulation::expected_time(const DenseStep& step) const {
 
 void Simulation::show_until(const DenseStep& step, double end) {
   for (const auto& o : observers_) {
-    for (double t = o->next_time(); t < end; t = o->next_time()) {
+    while (o->next_time() < end) {
+      const double t = o->next_time();
       snapshot_.resize(jet_.y.size());
       step.state(std::clamp((t - step.t0) / step.h, 0.0, 1.0), snapshot_);
       dynamics_->prescribe(t, snapshot_);
