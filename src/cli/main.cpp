@@ -16,8 +16,8 @@
 #include "version.hpp"
 
 // Exit codes: 0 done, 1 the run failed, 2 the input is wrong, 3 a bug in ehdjet.
-int main(int argc,
-         char** argv) { // NOLINT(bugprone-exception-escape): of the handlers' own text
+// NOLINTNEXTLINE(bugprone-exception-escape): of the handlers' own text
+int main(int argc, char** argv) {
   CLI::App app{"ehdjet: electrically charged jets as chains of beads", "ehdjet"};
   try {
     gsl_set_error_handler_off(); // its return codes are checked instead

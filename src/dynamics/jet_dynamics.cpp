@@ -16,7 +16,7 @@ void JetDynamics::set_rheology(std::unique_ptr<Rheology> rheology) {
 
 void JetDynamics::bind(const JetState& jet) {
   mass_ = jet.mass, volume_ = jet.volume, charge_ = jet.charge, landed_ = jet.landed;
-  has_embryo_ = jet.has_embryo;
+  has_embryo_ = jet.has_embryo, absorbing_plane_ = jet.absorbing_plane;
   if (has_embryo_) embryo_charge_ = jet.charge[1];
   inverse_mass_.resize(mass_.size());
   std::ranges::transform(mass_, inverse_mass_.begin(), [](double m) { return 1 / m; });
@@ -41,6 +41,36 @@ void JetDynamics::prescribe(double t, std::span<double> y) const {
     jet.position().set(1, nozzle_->embryo.position(nozzle, jet.position()[2]));
 }
 
+// Flying on with the velocity of their crossing is right to second order in the time since then,
+// which is less than a step. All beads but the last one of those that have passed have left
+// the chain: they act on nobody.
+void JetDynamics::absorb(std::span<double> y) {
+  passed_.clear();
+  if (!absorbing_plane_) return;
+  const JetColumns<double> jet{y, mass_.size()};
+  const auto r = jet.position();
+  const auto v = jet.velocity();
+  const std::size_t first = stage_.first;
+  auto landed = landed_.rbegin();
+  bool any = false;
+  for (std::size_t k = mass_.size(); k-- > first;) {
+    const bool rests = landed != landed_.rend() && landed->bead == k;
+    if (rests) ++landed;
+    if (!rests && !(r.x[k] > *absorbing_plane_)) break;
+    passed_.push_back({k, r[k], charge_[k]});
+    if (rests) continue;
+    any = true;
+    const double late = v.x[k] > 0 ? (r.x[k] - *absorbing_plane_) / v.x[k] : 0.0;
+    r.set(k, r[k] - late * v[k]);
+  }
+  if (!any) passed_.clear();
+}
+
+void JetDynamics::let_pass(std::span<double> y) {
+  const auto r = JetColumns<double>{y, mass_.size()}.position();
+  for (const Passed& p : passed_) r.set(p.bead, p.position), charge_[p.bead] = p.charge;
+}
+
 void JetDynamics::set_stage(double t, std::span<double> y) {
   prescribe(t, y);
   const JetColumns<double> jet{y, mass_.size()};
@@ -55,6 +85,8 @@ void JetDynamics::set_stage(double t, std::span<double> y) {
 void JetDynamics::evaluate(double t, std::span<double> y, std::span<double> rate) {
   EHDJET_EXPECTS(y.size() == rate.size() && !mass_.empty());
   ++evaluations_;
+  absorb(y);
+  for (std::size_t i = 0; i + 1 < passed_.size(); ++i) charge_[passed_[i].bead] = 0;
   set_stage(t, y);
   const std::size_t n = mass_.size();
   const JetColumns<double> rates{rate, n};
@@ -64,6 +96,7 @@ void JetDynamics::evaluate(double t, std::span<double> y, std::span<double> rate
   std::ranges::fill(forces, 0.0);
   for (const auto& term : terms_) term->add_force(stage_, force);
   if (rheology_) rheology_->stress_rate(stage_, rates.stress());
+  let_pass(y);
 
   std::ranges::copy(y.subspan(3 * n, 3 * n), rate.begin()); // dr/dt = v
   const double* w = inverse_mass_.data();
@@ -71,6 +104,10 @@ void JetDynamics::evaluate(double t, std::span<double> y, std::span<double> rate
 #pragma omp simd
     for (std::size_t k = 0; k < n; ++k) f[k] *= w[k];
   }
+  // How beads that have passed fly on is nobody's business any more: like the one before them, so
+  // that the charges that vanish make no jump, which would only shorten the step.
+  if (!passed_.empty() && passed_.back().bead > stage_.first)
+    for (const Passed& p : passed_) force.set(p.bead, force[passed_.back().bead - 1]);
   const std::size_t columns = rate.size() / n;
   for (const std::size_t k : held_)
     for (std::size_t c = 0; c < columns; ++c) rate[c * n + k] = 0;

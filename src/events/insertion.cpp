@@ -51,20 +51,26 @@ std::optional<double> Insertion::predict(const DenseStep& step) const {
 
 void Insertion::apply(EventContext& context) {
   JetState& jet = context.jet;
+  Ledger& ledger = context.ledger;
+  NewBead born = born_;
+  ++ledger.inserted_beads;
+  if (varicosity_ && ledger.inserted_beads % varicosity_->every == 0) {
+    born.volume *= varicosity_->volume;
+    born.mass *= varicosity_->mass;
+    born.charge *= varicosity_->charge;
+  }
   const auto r = jet.columns().position();
   insert_bead(jet, 1,
               {.position = embryo_.position(r[0], r[1]),
                .velocity = {nozzle_.fluid_velocity, 0, 0},
                .stress = 0,
-               .volume = born_.volume,
-               .mass = born_.mass,
-               .charge = born_.charge});
+               .volume = born.volume,
+               .mass = born.mass,
+               .charge = born.charge});
   jet.has_embryo = true;
-  Ledger& ledger = context.ledger;
-  ++ledger.inserted_beads;
-  ledger.inserted_mass += born_.mass;
-  ledger.inserted_charge += born_.charge;
-  ledger.inserted_volume += born_.volume;
+  ledger.inserted_mass += born.mass;
+  ledger.inserted_charge += born.charge;
+  ledger.inserted_volume += born.volume;
   ++context.statistics.insertions;
 }
 

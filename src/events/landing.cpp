@@ -3,8 +3,18 @@
 #include "ehdjet/events/root.hpp"
 
 #include <algorithm>
+#include <utility>
+#include <vector>
 
 namespace ehdjet {
+namespace {
+
+bool leading_may_go(const JetState& jet) {
+  return jet.links() > 1 && jet.is_landed(jet.links()) && jet.is_landed(jet.links() - 1);
+}
+
+} // namespace
+
 // Beads that have not landed and for which `reached` is true. An embryo never lands.
 template <class Reached, class Found>
 void Landing::for_each_arrival(const JetState& jet, const Reached& reached,
@@ -24,20 +34,33 @@ bool Landing::due(const JetState& jet) const {
 
 std::optional<double> Landing::locate(const DenseStep& step) {
   const auto x1 = step.end_x();
-  located_.reset();
-  std::optional<double> earliest;
+  located_.reset(), passing_.clear();
+  std::vector<std::pair<double, std::size_t>> found; // theta, bead
   for_each_arrival(
       step.jet, [&](std::size_t k) { return x1[k] >= distance_; },
       [&](std::size_t k) {
         const auto theta = first_crossing([&](double s) {
                              return step.x(s, k) - distance_;
                            }).value_or(1.0);
-        if (!earliest || theta < *earliest) earliest = theta, located_ = k;
+        found.emplace_back(theta, k);
       });
-  return earliest;
+  if (found.empty()) return std::nullopt;
+  std::ranges::sort(found);
+
+  std::size_t last = step.jet.links(); // that has not landed
+  while (step.jet.is_landed(last)) --last;
+  bool in_order = true; // from the end of the chain on, as the right-hand side assumes
+  for (std::size_t i = 0; i < found.size(); ++i) in_order &= found[i].second + i == last;
+  if (!step.jet.absorbing_plane || !in_order) {
+    located_ = found.front().second;
+    return found.front().first;
+  }
+  for (const auto& [theta, k] : found) passing_.push_back(arrival_inside(step, k, theta));
+  return std::nullopt;
 }
 
 std::optional<double> Landing::predict(const DenseStep& step) const {
+  if (step.jet.absorbing_plane) return std::nullopt;
   std::size_t k = step.jet.links();
   while (k >= step.jet.first() && step.jet.is_landed(k)) --k;
   if (k < step.jet.first()) return std::nullopt;
@@ -45,43 +68,90 @@ std::optional<double> Landing::predict(const DenseStep& step) const {
                            step.h * step.velocity(1, k).x());
 }
 
-void Landing::apply(EventContext& context) {
-  JetState& jet = context.jet;
-  if (located_) {
-    land(context, *located_);
-  } else {
-    const auto x = jet.columns().position().x;
-    std::vector<std::size_t> arrived;
-    for_each_arrival(
-        jet, [&](std::size_t k) { return x[k] >= distance_; },
-        [&](std::size_t k) { arrived.push_back(k); });
-    for (const std::size_t k : arrived) land(context, k);
+void Landing::anticipate(double t, JetState& jet) const {
+  for (const Arrival& a : passing_) {
+    if (a.time > t) break;
+    put_on_collector(jet, a);
+    while (leading_may_go(jet)) remove_leading_bead(jet);
   }
-  located_.reset();
-  while (jet.links() > 1 && jet.is_landed(jet.links()) && jet.is_landed(jet.links() - 1))
-    remove_leading(context);
 }
 
-void Landing::land(EventContext& context, std::size_t bead) const {
-  JetState& jet = context.jet;
-  jet.columns().position().x[bead] = distance_;
-  const std::size_t link = bead > 0 ? bead : jet.first(); // bead 0 owns none
-  const double radius = link_radius(jet.volume[link], link_length(jet, link));
-  const LandedBead landed{.bead = bead, .time = jet.time, .radius = radius};
-  jet.landed.insert(std::ranges::upper_bound(jet.landed, bead, {}, &LandedBead::bead),
-                    landed);
-  context.ledger.impact_speed = jet.columns().velocity()[bead].norm();
-  context.ledger.collector_radius = radius;
-  ++context.statistics.landings;
+void Landing::apply(EventContext& context) {
+  const auto arrived = arrivals(context.jet);
+  located_.reset(), passing_.clear();
+  for (const Arrival& a : arrived) {
+    put_on_collector(context.jet, a);
+    context.ledger.impact_speed = a.velocity.norm();
+    context.ledger.collector_radius =
+        std::ranges::find(context.jet.landed, a.bead, &LandedBead::bead)->radius;
+    ++context.statistics.landings;
+    while (leading_may_go(context.jet)) remove_leading(context, a.time);
+  }
+  if (may_pass_) keep_pace(context, arrived.size());
 }
 
-void Landing::remove_leading(EventContext& context) const {
+// Who lands now: the bead that ended the step or, at the end of a step, all that are there, the
+// last one of the chain first.
+std::vector<Landing::Arrival> Landing::arrivals(const JetState& jet) const {
+  if (located_) return {arrival_now(jet, *located_)};
+  std::vector<Arrival> arrived;
+  const auto x = jet.columns().position().x;
+  for_each_arrival(
+      jet, [&](std::size_t k) { return x[k] >= distance_; },
+      [&](std::size_t k) {
+        const auto passed = std::ranges::find(passing_, k, &Arrival::bead);
+        arrived.push_back(passed != passing_.end() ? *passed : arrival_now(jet, k));
+      });
+  std::ranges::reverse(arrived);
+  return arrived;
+}
+
+Landing::Arrival Landing::arrival_inside(const DenseStep& step, std::size_t bead,
+                                         double theta) const {
+  Vec3 position = step.position(theta, bead);
+  position.x() = distance_;
+  const double length = bead > first_bead_
+                            ? (position - step.position(theta, bead - 1)).norm()
+                            : link_length(step.jet, bead);
+  return {.bead = bead,
+          .time = step.time(theta),
+          .position = position,
+          .velocity = step.velocity(theta, bead),
+          .stress = step.jet.columns().has_stress() ? step.stress(theta, bead) : 0.0,
+          .link_length = length};
+}
+
+Landing::Arrival Landing::arrival_now(const JetState& jet, std::size_t bead) const {
+  const Bead b = bead_at(jet, bead);
+  return {.bead = bead,
+          .time = jet.time,
+          .position = {distance_, b.position.y(), b.position.z()},
+          .velocity = b.velocity,
+          .stress = b.stress,
+          .link_length = {}};
+}
+
+void Landing::put_on_collector(JetState& jet, const Arrival& arrival) {
+  const auto c = jet.columns();
+  c.position().set(arrival.bead, arrival.position);
+  c.velocity().set(arrival.bead, arrival.velocity);
+  if (c.has_stress()) c.stress()[arrival.bead] = arrival.stress;
+  const std::size_t link = arrival.bead > 0 ? arrival.bead : jet.first(); // 0 owns none
+  const double length = arrival.link_length.value_or(link_length(jet, link));
+  const LandedBead landed{.bead = arrival.bead,
+                          .time = arrival.time,
+                          .radius = link_radius(jet.volume[link], length)};
+  jet.landed.insert(
+      std::ranges::upper_bound(jet.landed, arrival.bead, {}, &LandedBead::bead), landed);
+}
+
+void Landing::remove_leading(EventContext& context, double time) {
   JetState& jet = context.jet;
   const std::size_t leading = jet.links();
   const LandedBead& landed = jet.landed.back();
   const DepositedBead deposited{
       .time = landed.time,
-      .removal_time = jet.time,
+      .removal_time = time,
       .bead = bead_at(jet, leading),
       .landing_radius = landed.radius,
       .radius = link_radius(jet.volume[leading], link_length(jet, leading))};
@@ -92,6 +162,19 @@ void Landing::remove_leading(EventContext& context) const {
   ledger.removed_volume += deposited.bead.volume;
   remove_leading_bead(jet);
   context.deposited.push_back(deposited);
+}
+
+// Beads pass once a landing would end every sixth step, and land in steps of their own again when
+// that would not matter any more.
+void Landing::keep_pace(EventContext& context, std::size_t landings) {
+  constexpr double frequent = 6, rare = 12, memory = 8; // in steps, steps and landings
+  const auto steps = static_cast<double>(context.statistics.steps - last_step_);
+  last_step_ = context.statistics.steps;
+  const double each = steps / static_cast<double>(landings);
+  for (std::size_t i = 0; i < landings; ++i)
+    steps_per_landing_ += (each - steps_per_landing_) / memory;
+  if (steps_per_landing_ < frequent) context.jet.absorbing_plane = distance_;
+  if (steps_per_landing_ > rare) context.jet.absorbing_plane.reset();
 }
 
 } // namespace ehdjet

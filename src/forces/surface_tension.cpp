@@ -1,5 +1,7 @@
 #include "ehdjet/forces/surface_tension.hpp"
 
+#include "ehdjet/jet/curvature.hpp"
+
 #include <cmath>
 #include <cstddef>
 #include <numbers>
@@ -7,32 +9,6 @@
 #include "link_tension.hpp"
 
 namespace ehdjet {
-namespace {
-
-// K as three numbers: the one place where it is written, for the vector and the bead loop.
-struct Curvature {
-  double x, y, z;
-};
-
-inline Curvature curvature(double ux, double uy, double uz, double wx, double wy,
-                           double wz) {
-  const double uu = ux * ux + uy * uy + uz * uz, ww = wx * wx + wy * wy + wz * wz;
-  const double px = uy * wz - uz * wy, py = uz * wx - ux * wz, pz = ux * wy - uy * wx;
-  const double bx = uu * wx - ww * ux, by = uu * wy - ww * uy, bz = uu * wz - ww * uz;
-  const double ex = ux - wx, ey = uy - wy, ez = uz - wz;
-  const double denominator = uu * ww * (ex * ex + ey * ey + ez * ez);
-  // Beads k-1 and k+1 in one place: no circle, and p = 0 anyway.
-  const double s = denominator > 0 ? 2 / denominator : 0.0;
-  return {s * (by * pz - bz * py), s * (bz * px - bx * pz), s * (bx * py - by * px)};
-}
-
-} // namespace
-
-Vec3 curvature_vector(const Vec3& u, const Vec3& w) {
-  const Curvature k = curvature(u.x(), u.y(), u.z(), w.x(), w.y(), w.z());
-  return {k.x, k.y, k.z};
-}
-
 void BendingSurfaceTension::add_force(const Stage& stage, Vec3View force) {
   const Links& links = stage.links();
   const double *l = links.length.data(), *dx = links.dx.data(), *dy = links.dy.data(),

@@ -112,9 +112,70 @@ void check_adaptive_keys(const IntegratorConfig& i, const SceneText& text) {
                     name, *value, i.min_step));
 }
 
+void check_refinement(const SceneConfig& c, const SceneText& text) {
+  if (!c.refinement) return;
+  const RefinementConfig& r = *c.refinement;
+  const auto refuse = [&](const char* key, const std::string& why) {
+    text.fail(fmt::format("refinement.{}", key), why);
+  };
+  if (c.nozzle && r.length < 2 * c.nozzle->link_length)
+    refuse(
+        "length",
+        fmt::format("refinement.length = {} m and nozzle.link_length = {} m: must be at "
+                    "least twice that, the length of the link that is being fed. Lengths "
+                    "are in metres",
+                    r.length, c.nozzle->link_length));
+  if (r.interval >= c.run.end_time * (1 + 1e-9))
+    refuse("interval",
+           fmt::format("refinement.interval = {} s and run.end_time = {} s: no refinement "
+                       "would happen",
+                       r.interval, c.run.end_time));
+  if (r.spread && r.remap == RefinementRemap::paper)
+    refuse("spread",
+           "refinement.spread and refinement.remap = \"paper\": the spread belongs "
+           "to the conservative remap. Remove one");
+  const bool weighted = r.weight != RefinementWeight::uniform;
+  for (const auto& [name, value] : {std::pair{"weight_strength", r.weight_strength},
+                                    {"shortest", r.shortest},
+                                    {"longest", r.longest}})
+    if (value && !weighted)
+      refuse(name, fmt::format("refinement.{} = {} needs a refinement.weight other than "
+                               "\"uniform\": a uniform mesh has equal links",
+                               name, *value));
+  if (r.weight == RefinementWeight::stress && !c.viscoelasticity)
+    refuse("weight", "refinement.weight = \"stress\" needs [viscoelasticity]: without it "
+                     "there is no stress");
+  if (r.shortest && *r.shortest > r.length)
+    refuse("shortest",
+           fmt::format("refinement.shortest = {} m and refinement.length = {} m: "
+                       "must be at most the mean link",
+                       *r.shortest, r.length));
+  if (r.longest && *r.longest < r.length)
+    refuse("longest", fmt::format("refinement.longest = {} m and refinement.length = {} m: "
+                                  "must be at least the mean link",
+                                  *r.longest, r.length));
+  const double shortest_cut = r.shortest.value_or(r.length / 2);
+  if (r.coarsen && *r.coarsen > shortest_cut)
+    refuse("coarsen",
+           fmt::format("refinement.coarsen = {} m: must be at most {} m, or links would be "
+                       "joined that have just been cut",
+                       *r.coarsen, shortest_cut));
+}
+
+void check_varicosity(const SceneConfig& c, const SceneText& text) {
+  if (!c.varicosity) return;
+  if (!c.nozzle)
+    text.fail("varicosity", "[varicosity] needs [nozzle]: no bead is born without one");
+  if (!c.varicosity->mass && !c.varicosity->volume && !c.varicosity->charge)
+    text.fail("varicosity",
+              "varicosity.mass, varicosity.volume and varicosity.charge are all "
+              "false: nothing would differ. Remove [varicosity]");
+}
+
 void check_output(const SceneConfig& c, const SceneText& text) {
-  for (const auto& [name, interval] :
-       {std::pair{"observables", c.output.observables}, {"frames", c.output.frames}})
+  for (const auto& [name, interval] : {std::pair{"observables", c.output.observables},
+                                       {"frames", c.output.frames},
+                                       {"resolving_power", c.output.resolving_power}})
     if (interval && c.run.end_time / *interval > most_rows)
       text.fail(
           fmt::format("output.{}", name),
@@ -125,6 +186,20 @@ void check_output(const SceneConfig& c, const SceneText& text) {
     text.fail("output.deposit",
               "output.deposit = true needs [collector]: nothing is deposited "
               "without one");
+  if (c.output.refinements != RefinementRecords::none && !c.refinement)
+    text.fail("output.refinements",
+              fmt::format("output.refinements = \"{}\" needs [refinement]",
+                          name_of(c.output.refinements, refinement_records)));
+  if (c.output.refinements == RefinementRecords::energies && !c.coulomb)
+    text.fail("output.refinements",
+              "output.refinements = \"energies\" needs [coulomb]: \"sums\" has all other "
+              "energies");
+  if (c.output.resolving_power && !c.nozzle)
+    text.fail(
+        "output.resolving_power",
+        fmt::format("output.resolving_power = {} s needs [nozzle]: the resolving power "
+                    "is relative to its link_length",
+                    *c.output.resolving_power));
 }
 
 } // namespace
@@ -140,6 +215,8 @@ void settle(SceneConfig& config, const SceneText& text) {
         fmt::format("integrator.stress_scale = {} Pa needs [viscoelasticity]: without it "
                     "there is no stress",
                     *config.integrator.stress_scale));
+  check_refinement(config, text);
+  check_varicosity(config, text);
   check_output(config, text);
 }
 

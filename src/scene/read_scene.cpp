@@ -126,9 +126,12 @@ std::string requirement(const auto&, const auto& allowed, const toml::node*) {
 std::string requirement(const auto&, const Range& range, const toml::node* node) {
   return (node != nullptr && !node->is_number() ? "a number " : "") + range.text();
 }
+std::string requirement(const std::size_t&, const Range& range, const toml::node*) {
+  return "a whole number " + range.text();
+}
 std::string requirement(const std::optional<std::size_t>&, const Range& range,
                         const toml::node*) {
-  return "a whole number " + range.text();
+  return requirement(std::size_t{}, range, nullptr);
 }
 
 std::string shown(const toml::node& node, const Range& range) {

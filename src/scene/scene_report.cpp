@@ -95,6 +95,11 @@ std::string output_text(const SceneConfig& c) {
     parts.push_back(fmt::format("{} rows of observables", rows(*c.output.observables)));
   if (c.output.frames)
     parts.push_back(fmt::format("{} frames of all beads", rows(*c.output.frames)));
+  if (c.output.resolving_power)
+    parts.push_back(
+        fmt::format("{} samples of the resolving power", rows(*c.output.resolving_power)));
+  if (c.output.refinements != RefinementRecords::none)
+    parts.emplace_back("a record of each refinement");
   if (c.output.deposit) parts.emplace_back("every bead that leaves at the collector");
   return parts.empty() ? "none" : fmt::format("{}", fmt::join(parts, ", "));
 }
@@ -108,6 +113,17 @@ std::string jet_text(const Scene& scene) {
   return "born at the nozzle: a link that reaches 1.5 link lengths gets a new bead, "
          "released at 2 "
          "link lengths";
+}
+
+std::string refinement_text(const SceneConfig& c) {
+  const RefinementConfig& r = *c.refinement;
+  std::string text = fmt::format(
+      "  refinement: every {} s, where links are longer than {} m; {} mesh, {} remap",
+      r.interval, r.length, name_of(r.weight, refinement_weights),
+      name_of(r.remap, refinement_remaps));
+  if (r.coarsen) text += fmt::format("; links together below {} m are joined", *r.coarsen);
+  if (r.max_beads) text += fmt::format("; at most {} beads", *r.max_beads);
+  return text + '\n';
 }
 
 /// Times that follow from single numbers of the scene.
@@ -133,6 +149,12 @@ std::string run_text(const Scene& scene) {
               ? fmt::format("  collector: beads land at x = {} m and leave the chain\n",
                             c.collector->distance)
               : "  collector: none, beads fly on\n";
+  if (c.varicosity)
+    text += fmt::format(
+        "  varicosity: every {}th bead has {} times the{}{}{}\n", c.varicosity->every,
+        c.varicosity->factor, c.varicosity->mass ? " mass" : "",
+        c.varicosity->volume ? " volume" : "", c.varicosity->charge ? " charge" : "");
+  if (c.refinement) text += refinement_text(c);
   text += fmt::format("  time: 0 to {} s, {}, {}", c.run.end_time, i.method,
                       i.step ? fmt::format("step {} s ({:.0f} steps)", *i.step,
                                            std::ceil(c.run.end_time / *i.step))

@@ -1,8 +1,10 @@
 #include "ehdjet/simulation/build.hpp"
 
+#include "ehdjet/coulomb/energy.hpp"
 #include "ehdjet/coulomb/make_solver.hpp"
 #include "ehdjet/events/insertion.hpp"
 #include "ehdjet/events/landing.hpp"
+#include "ehdjet/events/refinement.hpp"
 #include "ehdjet/forces/coulomb_force.hpp"
 #include "ehdjet/forces/external_field.hpp"
 #include "ehdjet/forces/gravity.hpp"
@@ -27,6 +29,77 @@ Nozzle nozzle_of(const NozzleConfig& c) {
 
 NewBead new_bead_of(const NozzleConfig& c) {
   return NewBead::from(c.radius, c.link_length, c.density, c.charge_density);
+}
+
+std::optional<Varicosity> varicosity_of(const SceneConfig& c) {
+  if (!c.varicosity) return std::nullopt;
+  const VaricosityConfig& v = *c.varicosity;
+  return Varicosity{.every = v.every,
+                    .volume = v.volume ? v.factor : 1,
+                    .mass = v.mass ? v.factor : 1,
+                    .charge = v.charge ? v.factor : 1};
+}
+
+MeshWeight mesh_weight(RefinementWeight weight) {
+  switch (weight) {
+  case RefinementWeight::curvature:
+    return MeshWeight::curvature;
+  case RefinementWeight::radius:
+    return MeshWeight::radius;
+  case RefinementWeight::stress:
+    return MeshWeight::stress;
+  case RefinementWeight::uniform:
+    break;
+  }
+  return MeshWeight::uniform;
+}
+
+RefinementRule refinement_rule(const SceneConfig& c) {
+  const RefinementConfig& r = *c.refinement;
+  RefinementRule rule{
+      .mesh = {.length = r.length,
+               .weight = mesh_weight(r.weight),
+               .strength = r.weight_strength.value_or(1),
+               .shortest = r.shortest.value_or(0),
+               .longest = r.longest.value_or(MeshRule{}.longest),
+               .most_links = r.max_beads.value_or(MeshRule{}.most_links)},
+      .remap =
+          r.remap == RefinementRemap::paper ? LinkRemap::paper : LinkRemap::conservative,
+      .spread = r.spread == RefinementSpread::monotone_cubic ? Spread::monotone_cubic
+                                                             : Spread::linear,
+      .velocity = r.velocity == ColumnRemap::conservative ? VelocityRemap::momentum
+                                                          : VelocityRemap::spline,
+      .stress = r.stress == ColumnRemap::conservative ? StressRemap::conservative
+                                                      : StressRemap::spline,
+      .coarsen = r.coarsen,
+      .collector = {},
+      .has_nozzle = c.nozzle.has_value()};
+  if (c.collector) rule.collector = c.collector->distance;
+  return rule;
+}
+
+double acting_energy(const JetState& jet, std::optional<Embryo> embryo) {
+  std::vector<double> charge = jet.charge;
+  const auto r = jet.columns().position();
+  if (jet.has_embryo) charge[1] *= embryo->charge_fraction((r[2] - r[0]).norm());
+  return coulomb_energy(r, charge);
+}
+
+std::unique_ptr<Refinement> build_refinement(const SceneConfig& c) {
+  std::optional<Refinement::Recording> recording;
+  if (c.output.refinements != RefinementRecords::none)
+    recording = {.elastic_modulus =
+                     c.viscoelasticity ? c.viscoelasticity->elastic_modulus : 0,
+                 .coulomb_energy = {}};
+  if (c.output.refinements == RefinementRecords::energies) {
+    std::optional<Embryo> embryo;
+    if (c.nozzle) embryo = Embryo{.link_length = c.nozzle->link_length};
+    recording->coulomb_energy = [embryo](const JetState& jet) {
+      return acting_energy(jet, embryo);
+    };
+  }
+  return std::make_unique<Refinement>(refinement_rule(c), c.refinement->interval,
+                                      std::move(recording));
 }
 
 // Without elasticity, or without viscosity to hold it, stress is exactly zero at all times.
@@ -130,18 +203,23 @@ std::unique_ptr<Simulation> build_simulation(const Scene& scene) {
   // The order in which events at the same instant are applied (model 5).
   const bool first_is_free =
       c.chain && c.chain->fixed != FixedEnds::first && c.chain->fixed != FixedEnds::both;
+  // With fixed steps, for studies of convergence, every landing ends a step.
+  const bool may_pass = c.integrator.rtol.has_value()
+                        && c.integrator.events == EventPlacement::located
+                        && c.integrator.landings == LandingSteps::automatic;
   if (c.collector)
     simulation->add(
-        std::make_unique<Landing>(c.collector->distance, first_is_free ? 0 : 1));
+        std::make_unique<Landing>(c.collector->distance, first_is_free ? 0 : 1, may_pass));
   if (c.nozzle) {
     const Embryo embryo{.link_length = c.nozzle->link_length};
     const auto velocity = c.nozzle->insertion_velocity == InsertionVelocity::half
                               ? ReleaseVelocity::half
                               : ReleaseVelocity::nozzle;
     simulation->add(std::make_unique<Release>(nozzle_of(*c.nozzle), embryo, velocity));
-    simulation->add(
-        std::make_unique<Insertion>(nozzle_of(*c.nozzle), embryo, new_bead_of(*c.nozzle)));
+    simulation->add(std::make_unique<Insertion>(nozzle_of(*c.nozzle), embryo,
+                                                new_bead_of(*c.nozzle), varicosity_of(c)));
   }
+  if (c.refinement) simulation->add(build_refinement(c));
   return simulation;
 }
 

@@ -89,19 +89,20 @@ void Simulation::run_until(double end_time) {
   const WallClock clock;
   const double wall_before = statistics_.wall_time;
   while (jet_.time < end_time) {
-    const double to_end = end_time - jet_.time;
-    const double wanted = choose_step();
+    const double stop = next_stop(end_time), to_stop = stop - jet_.time;
+    const double wanted = choose_step(stop);
     const bool last =
-        wanted >= (1 - 1e-9) * to_end; // leaves no remainder of round-off size
-    const double h = attempt_step(last ? to_end : wanted);
+        wanted >= (1 - 1e-9) * to_stop; // leaves no remainder of round-off size
+    const double h = attempt_step(last ? to_stop : wanted);
+    if (h == to_stop) step_ = std::max(step_, wanted); // cut short says nothing of the next
     const DenseStep step(jet_.time, h, jet_, *integrator_, *dynamics_);
 
     const auto found = events_located_ ? first_event(step) : std::nullopt;
     const double theta = found ? found->theta : 1.0;
-    const bool reached_end = !found && h == to_end; // exactly, whatever the round-off
+    const bool reached_stop = theta == 1 && h == to_stop; // exactly, whatever the round-off
     CompensatedSum next_time = time_;
     next_time += theta * h;
-    const double t1 = reached_end ? end_time : double(next_time);
+    const double t1 = reached_stop ? stop : double(next_time);
     show_until(step, t1);
     expected_event_ = found || !events_located_ ? never : expected_time(step);
 
@@ -110,7 +111,7 @@ void Simulation::run_until(double end_time) {
     } else {
       integrator_->commit(jet_.y);
     }
-    time_ = reached_end ? CompensatedSum(end_time) : next_time;
+    time_ = reached_stop ? CompensatedSum(stop) : next_time;
     jet_.time = t1;
     dynamics_->prescribe(jet_.time, jet_.y);
     apply_events(found ? found->index : events_.size());
@@ -122,7 +123,14 @@ void Simulation::run_until(double end_time) {
       show(*o, {o->next_time(), std::as_const(jet_).columns(), jet_, ledger_, statistics_});
 }
 
-double Simulation::choose_step() {
+// The end of the run, or an earlier time at which an event wants a step to end.
+double Simulation::next_stop(double end_time) const {
+  double stop = end_time;
+  for (const auto& e : events_) stop = std::min(stop, e->next_time());
+  return stop;
+}
+
+double Simulation::choose_step(double stop) {
   if (limits_.fixed) return *limits_.fixed;
   if (step_ == 0) {
     step_ =
@@ -134,6 +142,8 @@ double Simulation::choose_step() {
   double h = std::min(step_, limits_.longest);
   const double remaining = aim_beyond * (expected_event_ - jet_.time);
   if (remaining > 0 && remaining < 2 * h) h = remaining > h ? remaining / 2 : remaining;
+  if (const double to_stop = stop - jet_.time; h < to_stop && to_stop < 2 * h)
+    h = to_stop / 2;
   return h;
 }
 
@@ -188,7 +198,14 @@ void Simulation::show_until(const DenseStep& step, double end) {
       snapshot_.resize(jet_.y.size());
       step.state(std::clamp((t - step.t0) / step.h, 0.0, 1.0), snapshot_);
       dynamics_->prescribe(t, snapshot_);
-      show(*o, {t, {snapshot_, jet_.beads()}, jet_, ledger_, statistics_});
+      if (jet_.absorbing_plane) { // beads may have landed without an end of the step
+        JetState seen = jet_;
+        seen.y = snapshot_;
+        for (const auto& e : events_) e->anticipate(t, seen);
+        show(*o, {t, std::as_const(seen).columns(), seen, ledger_, statistics_});
+      } else {
+        show(*o, {t, {snapshot_, jet_.beads()}, jet_, ledger_, statistics_});
+      }
     }
   }
 }
@@ -209,7 +226,7 @@ void Simulation::stop_at(const DenseStep& step, double theta) {
 }
 
 void Simulation::apply_events(std::size_t located) {
-  EventContext context{jet_, ledger_, statistics_, deposited_};
+  EventContext context{jet_, ledger_, statistics_, deposited_, refined_};
   bool any = false;
   for (std::size_t i = 0; i < events_.size();) {
     if (i != located && !events_[i]->due(jet_)) {
@@ -229,6 +246,9 @@ void Simulation::apply_events(std::size_t located) {
   for (const DepositedBead& bead : deposited_)
     for (const auto& o : observers_) o->deposit(bead);
   deposited_.clear();
+  for (const RefinementRecord& record : refined_)
+    for (const auto& o : observers_) o->refined(record);
+  refined_.clear();
   dynamics_->bind(jet_);
   dynamics_->prescribe(jet_.time, jet_.y);
   integrator_->restart();

@@ -63,7 +63,17 @@ private:
     Nozzle nozzle;
     Embryo embryo;
   };
+  /// A bead beyond the absorbing plane, as it was before it was put back.
+  struct Passed {
+    std::size_t bead;
+    Vec3 position;
+    double charge;
+  };
   void set_stage(double t, std::span<double> y);
+  /// Puts beads that have passed an absorbing plane since the step began back to where they
+  /// crossed it:  r - v (x - h)/v_x                                         (model 5)
+  void absorb(std::span<double> y);
+  void let_pass(std::span<double> y);
 
   std::vector<std::unique_ptr<ForceTerm>>
       terms_; // the rheology, which also has a force, last
@@ -78,6 +88,8 @@ private:
   std::vector<LandedBead> landed_;
   std::vector<std::size_t> held_; // beads with rate zero
   bool has_embryo_ = false;
+  std::optional<double> absorbing_plane_; // [m]
+  std::vector<Passed> passed_;            // in the present evaluation, from the end on
   std::uint64_t evaluations_ = 0;
 };
 

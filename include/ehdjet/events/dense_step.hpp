@@ -31,6 +31,9 @@ public:
   [[nodiscard]] Vec3 velocity(double theta, std::size_t bead) const {
     return vector(theta, 3, bead);
   }
+  [[nodiscard]] double stress(double theta, std::size_t bead) const {
+    return component(theta, JetColumns<double>::kinematic_columns * jet.beads() + bead);
+  }
   [[nodiscard]] double x(double theta, std::size_t bead) const {
     return component(theta, bead);
   }

@@ -3,6 +3,7 @@
 #include "ehdjet/events/dense_step.hpp"
 #include "ehdjet/jet/ledger.hpp"
 
+#include <limits>
 #include <optional>
 #include <string_view>
 #include <vector>
@@ -14,26 +15,37 @@ struct EventContext {
   JetState& jet; ///< at the time of the event, prescribed beads in their places
   Ledger& ledger;
   RunStatistics& statistics;
-  std::vector<DepositedBead>& deposited; ///< receives beads that leave the chain
+  std::vector<DepositedBead>& deposited;  ///< receives beads that leave the chain
+  std::vector<RefinementRecord>& refined; ///< receives what a refinement did
 };
 
-/// Something that happens to the chain at the root of a continuous function of the state
-/// (model 4 and 5), located inside a step on the dense output.
+/// Something that happens to the chain: at the root of a continuous function of the state (model 4
+/// and 5), located inside a step on the dense output, or at a given time, where a step ends.
 class Event {
 public:
   virtual ~Event() = default;
   [[nodiscard]] virtual std::string_view name() const = 0;
 
+  /// Time at which a step must end so that the event can happen then; infinity for events that
+  /// follow from the state [s].
+  [[nodiscard]] virtual double next_time() const {
+    return std::numeric_limits<double>::infinity();
+  }
+
   /// Whether the state calls for the event now: at the end of a step (events = "step-end"), or
   /// right after another event at the same instant.
   [[nodiscard]] virtual bool due(const JetState& jet) const = 0;
 
-  /// First theta in (0, 1] at which the event happens, if it does.
+  /// First theta in (0, 1] at which the event happens and must end the step, if it does.
   [[nodiscard]] virtual std::optional<double> locate(const DenseStep& step) = 0;
 
   /// When the event may be expected, from the step just made: theta > 1, a guess for the choice
   /// of the next step size only.
   [[nodiscard]] virtual std::optional<double> predict(const DenseStep& step) const = 0;
+
+  /// What has happened to the chain by time t inside a step that the event does not end, for those
+  /// who look: done to `jet`, a copy at that time.
+  virtual void anticipate(double /*t*/, JetState& /*jet*/) const {}
 
   /// Changes the chain. Called at a located time or when due.
   virtual void apply(EventContext& context) = 0;

@@ -3,6 +3,9 @@
 #include "ehdjet/events/event.hpp"
 #include "ehdjet/jet/nozzle.hpp"
 
+#include <cstdint>
+#include <optional>
+
 namespace ehdjet {
 
 /// What every bead that is born at the nozzle carries (model 1):
@@ -17,6 +20,12 @@ struct NewBead {
                       double charge_density);
 };
 
+/// Every k-th bead differs: an impurity that makes the jet varicose (model 4).
+struct Varicosity {
+  std::uint64_t every = 1;                 ///< k, counted with the bead of the start
+  double volume = 1, mass = 1, charge = 1; ///< factors f
+};
+
 /// Velocity that a released bead starts with (model 4.2).
 enum class ReleaseVelocity {
   half,  ///< ((v_2x - v_s)/2 + v_s, v_2y/2, v_2z/2), the paper's
@@ -27,10 +36,12 @@ enum class ReleaseVelocity {
 /// Nothing jumps: its charge grows from zero and it carries no stress.
 class Insertion final : public Event {
 public:
-  Insertion(const Nozzle& nozzle, const Embryo& embryo, const NewBead& born)
+  Insertion(const Nozzle& nozzle, const Embryo& embryo, const NewBead& born,
+            std::optional<Varicosity> varicosity = {})
       : nozzle_(nozzle)
       , embryo_(embryo)
-      , born_(born) {}
+      , born_(born)
+      , varicosity_(varicosity) {}
   [[nodiscard]] std::string_view name() const override { return "insertion"; }
   [[nodiscard]] bool due(const JetState& jet) const override;
   [[nodiscard]] std::optional<double> locate(const DenseStep& step) override;
@@ -45,6 +56,7 @@ private:
   Nozzle nozzle_;
   Embryo embryo_;
   NewBead born_;
+  std::optional<Varicosity> varicosity_;
 };
 
 /// The embryo becomes a free bead when |r_2 - r_0| reaches 2 l_step: stress 0, full charge. Bead 2

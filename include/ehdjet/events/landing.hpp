@@ -3,29 +3,53 @@
 #include "ehdjet/events/event.hpp"
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
+#include <vector>
 
 namespace ehdjet {
 
 /// A bead that reaches the collector plane x = h is frozen there. The leading bead leaves the
 /// chain as soon as its upstream neighbour has landed too; until then its link still pulls with
 /// its last stress. An interior bead that lands first freezes and waits (model 5).
+///
+/// A landing ends the step, unless beads land every few steps. Then they pass the collector
+/// during a step, in which they count as resting where they crossed (JetState::absorbing_plane); time,
+/// place, velocity and stress of each landing are read off the dense output, and the chain
+/// changes at the end of the step. What that does to the motion is part of the error estimate.
 class Landing final : public Event {
 public:
   /// `collector_distance`: h [m]; `first_bead`: 1 behind a nozzle, 0 for a chain whose bead 0 is
-  /// like any other.
-  explicit Landing(double collector_distance, std::size_t first_bead = 1)
+  /// like any other; `may_pass`: steps need not end at frequent landings.
+  explicit Landing(double collector_distance, std::size_t first_bead = 1,
+                   bool may_pass = false)
       : distance_(collector_distance)
-      , first_bead_(first_bead) {}
+      , first_bead_(first_bead)
+      , may_pass_(may_pass) {}
   [[nodiscard]] std::string_view name() const override { return "landing"; }
   [[nodiscard]] bool due(const JetState& jet) const override;
   [[nodiscard]] std::optional<double> locate(const DenseStep& step) override;
   [[nodiscard]] std::optional<double> predict(const DenseStep& step) const override;
+  void anticipate(double t, JetState& jet) const override;
   void apply(EventContext& context) override;
 
 private:
-  void land(EventContext& context, std::size_t bead) const;
-  void remove_leading(EventContext& context) const;
+  /// A bead at the collector.
+  struct Arrival {
+    std::size_t bead = 0;
+    double time = 0; ///< [s]
+    Vec3 position = Vec3::Zero(), velocity = Vec3::Zero();
+    double stress = 0;
+    std::optional<double> link_length; ///< absent: that of the jet as it is [m]
+  };
+
+  [[nodiscard]] Arrival arrival_inside(const DenseStep& step, std::size_t bead,
+                                       double theta) const;
+  [[nodiscard]] Arrival arrival_now(const JetState& jet, std::size_t bead) const;
+  [[nodiscard]] std::vector<Arrival> arrivals(const JetState& jet) const;
+  static void put_on_collector(JetState& jet, const Arrival& arrival);
+  static void remove_leading(EventContext& context, double time);
+  void keep_pace(EventContext& context, std::size_t landings);
 
   template <class Reached, class Found>
   void for_each_arrival(const JetState& jet, const Reached& reached,
@@ -33,7 +57,11 @@ private:
 
   double distance_;
   std::size_t first_bead_;
-  std::optional<std::size_t> located_; // the bead that `locate` found
+  bool may_pass_;
+  std::optional<std::size_t> located_; // the bead that ends the step
+  std::vector<Arrival> passing_;       // beads that do not, in the order of their landing
+  double steps_per_landing_ = 100;     // recent average
+  std::uint64_t last_step_ = 0;
 };
 
 } // namespace ehdjet

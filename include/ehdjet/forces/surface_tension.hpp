@@ -6,14 +6,6 @@
 
 namespace ehdjet {
 
-/// Curvature vector at a bead with neighbours at u = r_(k-1) - r_k and w = r_(k+1) - r_k: 1/R of
-/// the circle through the three beads, towards its centre.
-///
-///     K = 2 (|u|^2 w - |w|^2 u) x p / (|u|^2 |w|^2 |u-w|^2),   p = u x w      (model 2) [1/m]
-///
-/// laws   : exactly 0 for collinear beads, finite when the chain folds back on itself
-Vec3 curvature_vector(const Vec3& u, const Vec3& w);
-
 /// The paper's surface tension, on beads with a link on either side.
 ///
 ///     F_k = alpha pi ((a_k + a_(k+1))/2)^2 K_k                          (model 2)

@@ -3,6 +3,7 @@
 #include "ehdjet/jet/jet_columns.hpp"
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -31,6 +32,9 @@ struct JetState {
   std::vector<double> volume; ///< [m^3]
   bool has_embryo = false;
   std::vector<LandedBead> landed; ///< still in the chain, ascending bead index
+  /// While beads land every few steps: the plane beyond which, during a step, a bead counts as
+  /// resting where it crossed (model 5). None: each landing ends a step [m].
+  std::optional<double> absorbing_plane;
 
   [[nodiscard]] std::size_t beads() const { return mass.size(); }
   [[nodiscard]] std::size_t links() const { return beads() - 1; }

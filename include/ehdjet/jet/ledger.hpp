@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <optional>
 
 namespace ehdjet {
 
@@ -29,12 +30,31 @@ struct DepositedBead {
   double radius = 0;         ///< of its link when it left the chain [m]
 };
 
+/// Sums over a chain's beads, or their change.
+struct JetTotals {
+  double mass = 0, charge = 0, volume = 0; ///< all beads but bead 0 [kg], [C], [m^3]
+  Vec3 momentum = Vec3::Zero();            ///< of beads that move freely [kg m/s]
+  double kinetic_energy = 0;               ///< of the same [J]
+  double elastic_energy = 0;               ///< sum of V sigma^2/(2 G) [J]
+  double coulomb_energy = 0;               ///< 0 if nobody asked for it [J]
+};
+
+/// What one refinement did to the chain (model 7).
+struct RefinementRecord {
+  double time = 0;                               ///< [s]
+  std::size_t kept = 0;                          ///< bead s: beads 0 ... s are untouched
+  std::size_t beads_before = 0, beads_after = 0; ///< links of the chain
+  JetTotals change;
+  double worst_link = 0; ///< max |l/l* - 1| over the new links
+};
+
 /// Cost of the run so far.
 struct RunStatistics {
   std::uint64_t evaluations = 0; ///< of the right-hand side
   std::uint64_t steps = 0;       ///< accepted
   std::uint64_t rejected = 0;    ///< attempts
   std::uint64_t insertions = 0, releases = 0, landings = 0;
+  std::optional<std::uint64_t> refinements; ///< none in a run that does not refine
   std::uint64_t coincident_pairs = 0; ///< pairs of beads at zero distance that were skipped
   double shortest_step = std::numeric_limits<double>::infinity(); ///< [s]
   double longest_step = 0;                                        ///< [s]

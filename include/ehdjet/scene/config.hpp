@@ -21,6 +21,18 @@ enum class InsertionVelocity { half, nozzle };
 enum class SurfaceTensionForm { paper, line };
 /// Where events are applied: at their root inside a step, or at the end of the step.
 enum class EventPlacement { located, step_end };
+/// Whether steps go on through landings while those are frequent (model 5).
+enum class LandingSteps { automatic, located };
+/// How volume, mass and charge get onto a refined mesh (model 7).
+enum class RefinementRemap { conservative, paper };
+/// What makes a refined mesh finer than elsewhere.
+enum class RefinementWeight { uniform, curvature, radius, stress };
+/// How the conservative remap spreads what a link carries along it.
+enum class RefinementSpread { linear, monotone_cubic };
+/// How velocities or stresses get onto a refined mesh.
+enum class ColumnRemap { spline, conservative };
+/// What is recorded of each refinement.
+enum class RefinementRecords { none, sums, energies };
 /// Norm over the components of the scaled error estimate.
 enum class ErrorNorm { max, rms };
 
@@ -83,6 +95,30 @@ struct CollectorConfig {
   bool operator==(const CollectorConfig&) const = default;
 };
 
+/// Every k-th bead that is born differs from the others (model 4).
+struct VaricosityConfig {
+  std::size_t every = 0;                           ///< k
+  double factor = 0;                               ///< f
+  bool mass = true, volume = true, charge = false; ///< what it multiplies
+  bool operator==(const VaricosityConfig&) const = default;
+};
+
+/// Dynamic mesh refinement (model 7).
+struct RefinementConfig {
+  double length = 0;   ///< L~ [m]
+  double interval = 0; ///< t_ref [s]
+  RefinementRemap remap = RefinementRemap::conservative;
+  std::optional<RefinementSpread> spread; ///< conservative remap only; linear
+  ColumnRemap velocity = ColumnRemap::spline;
+  ColumnRemap stress = ColumnRemap::spline;
+  RefinementWeight weight = RefinementWeight::uniform;
+  std::optional<double> weight_strength;   ///< weighted meshes only; 1 [-]
+  std::optional<double> shortest, longest; ///< links of a weighted mesh [m]
+  std::optional<double> coarsen;           ///< join links together shorter than this [m]
+  std::optional<std::size_t> max_beads;
+  bool operator==(const RefinementConfig&) const = default;
+};
+
 /// Time integration (model 6). Either `rtol` (adaptive) or `step` (fixed).
 struct IntegratorConfig {
   std::string method = "dormand-prince";
@@ -97,6 +133,7 @@ struct IntegratorConfig {
   std::optional<double> stress_scale;   ///< [Pa], 0.1 G
   ErrorNorm norm = ErrorNorm::max;
   EventPlacement events = EventPlacement::located;
+  LandingSteps landings = LandingSteps::automatic;
   bool operator==(const IntegratorConfig&) const = default;
 };
 
@@ -111,7 +148,9 @@ struct OutputConfig {
   std::optional<double> observables; ///< time between rows of observables [s]
   std::optional<double> frames;      ///< time between frames of all beads [s]
   bool deposit = false;              ///< record every bead that leaves at the collector
-  double flush = 2;                  ///< longest wall time between flushes to disk [s]
+  RefinementRecords refinements = RefinementRecords::none;
+  std::optional<double> resolving_power; ///< time between samples of l_step/l [s]
+  double flush = 2;                      ///< longest wall time between flushes to disk [s]
   bool operator==(const OutputConfig&) const = default;
 };
 
@@ -126,6 +165,8 @@ struct SceneConfig {
   std::optional<CoulombConfig> coulomb;
   std::optional<ViscoelasticityConfig> viscoelasticity;
   std::optional<SurfaceTensionConfig> surface_tension;
+  std::optional<VaricosityConfig> varicosity;
+  std::optional<RefinementConfig> refinement;
   IntegratorConfig integrator;
   OutputConfig output;
   bool operator==(const SceneConfig&) const = default;

@@ -69,8 +69,27 @@ inline constexpr Choices<SurfaceTensionForm, 2> surface_tension_forms{
     {{"paper", SurfaceTensionForm::paper}, {"line", SurfaceTensionForm::line}}};
 inline constexpr Choices<EventPlacement, 2> event_placements{
     {{"located", EventPlacement::located}, {"step-end", EventPlacement::step_end}}};
+inline constexpr Choices<LandingSteps, 2> landing_steps{
+    {{"auto", LandingSteps::automatic}, {"located", LandingSteps::located}}};
 inline constexpr Choices<ErrorNorm, 2> error_norms{
     {{"max", ErrorNorm::max}, {"rms", ErrorNorm::rms}}};
+
+inline constexpr Choices<RefinementRemap, 2> refinement_remaps{
+    {{"conservative", RefinementRemap::conservative}, {"paper", RefinementRemap::paper}}};
+inline constexpr Choices<RefinementWeight, 4> refinement_weights{
+    {{"uniform", RefinementWeight::uniform},
+     {"curvature", RefinementWeight::curvature},
+     {"radius", RefinementWeight::radius},
+     {"stress", RefinementWeight::stress}}};
+inline constexpr Choices<RefinementSpread, 2> refinement_spreads{
+    {{"linear", RefinementSpread::linear},
+     {"monotone-cubic", RefinementSpread::monotone_cubic}}};
+inline constexpr Choices<ColumnRemap, 2> column_remaps{
+    {{"spline", ColumnRemap::spline}, {"conservative", ColumnRemap::conservative}}};
+inline constexpr Choices<RefinementRecords, 3> refinement_records{
+    {{"none", RefinementRecords::none},
+     {"sums", RefinementRecords::sums},
+     {"energies", RefinementRecords::energies}}};
 
 template <class Enum, std::size_t N>
 std::string_view name_of(Enum value, const Choices<Enum, N>& choices) {
@@ -182,6 +201,51 @@ void describe(V& v, SurfaceTensionConfig& c) {
 }
 
 template <class V>
+void describe(V& v, VaricosityConfig& c) {
+  v.required("every", c.every, between("-", 1, 1e9),
+             "every so-manieth inserted bead is one");
+  v.required("factor", c.factor, positive("-", 1e3),
+             "multiplies what it has of the following");
+  v.optional("mass", c.mass, YesNo{}, "its mass");
+  v.optional("volume", c.volume, YesNo{}, "its volume: without, it is denser");
+  v.optional("charge", c.charge, YesNo{}, "its charge");
+}
+
+template <class V>
+void describe(V& v, RefinementConfig& c) {
+  v.required("length", c.length, positive("m", 1),
+             "links longer than this are cut, L~; the mean link of a weighted mesh");
+  v.required("interval", c.interval, positive("s", longest_time),
+             "time between refinements, t_ref: they happen at its multiples");
+  v.optional("remap", c.remap, refinement_remaps,
+             "volume, mass and charge: shared out along the arc length, every sum and bump "
+             "kept; or the paper's, from a spline of the radius");
+  v.optional("spread", c.spread, refinement_spreads,
+             "conservative remap: what a link carries is spread evenly, or smoothly and "
+             "monotonically along the jet",
+             "linear");
+  v.optional("velocity", c.velocity, column_remaps,
+             "Akima spline, or average that keeps the momentum");
+  v.optional("stress", c.stress, column_remaps,
+             "Akima spline, or average that keeps the sum of volume times stress");
+  v.optional("weight", c.weight, refinement_weights,
+             "where the mesh is finer than elsewhere: nowhere, or where this is large");
+  v.optional(
+      "weight_strength", c.weight_strength, non_negative("-", 1e6),
+      "1 + weight_strength w/<w> links where there would be one if the weight w were 0",
+      "1, if there is a weight");
+  v.optional("shortest", c.shortest, positive("m", 1), "shortest link of a weighted mesh",
+             "no limit");
+  v.optional("longest", c.longest, positive("m", 1), "longest link of a weighted mesh",
+             "no limit");
+  v.optional("coarsen", c.coarsen, positive("m", 1),
+             "join neighbouring links that are together no longer than this",
+             "links are never joined");
+  v.optional("max_beads", c.max_beads, between("-", 2, 1e9),
+             "refine no further than to this number of beads", "no limit");
+}
+
+template <class V>
 void describe(V& v, IntegratorConfig& c) {
   v.optional("method", c.method, integration_method_names(), "Runge-Kutta method");
   v.optional("rtol", c.rtol, between("-", 1e-14, 0.1),
@@ -206,6 +270,10 @@ void describe(V& v, IntegratorConfig& c) {
   v.optional(
       "events", c.events, event_placements,
       "insertion and landing happen at their root inside a step, or snap to its end");
+  v.optional(
+      "landings", c.landings, landing_steps,
+      "adaptive steps end at every landing, or only as long as landings are rare; their "
+      "times are located either way");
 }
 
 template <class V>
@@ -216,6 +284,12 @@ void describe(V& v, OutputConfig& c) {
              "time between frames of all beads", "none are written");
   v.optional("deposit", c.deposit, YesNo{},
              "record every bead that leaves at the collector");
+  v.optional("refinements", c.refinements, refinement_records,
+             "record of each refinement the change of all sums, or also of the Coulomb "
+             "energy, which costs as much as two direct sums");
+  v.optional("resolving_power", c.resolving_power, positive("s", longest_time),
+             "time between samples of the resolving power link_length/l along the jet",
+             "none are taken");
   v.optional("flush", c.flush, positive("s", 3600),
              "longest wall time between flushes to disk");
 }
@@ -236,6 +310,10 @@ void describe(V& v, SceneConfig& c) {
           "Mutual Coulomb force of all beads, the nozzle's included.");
   v.table("viscoelasticity", c.viscoelasticity, "The fluid is a Maxwell fluid.");
   v.table("surface_tension", c.surface_tension, "Surface tension.");
+  v.table("varicosity", c.varicosity,
+          "Every k-th bead that is born differs from the others.");
+  v.table("refinement", c.refinement,
+          "Links that have become too long are cut (dynamic mesh refinement).");
   v.table("integrator", c.integrator,
           "Integration in time, adaptive (`rtol`) or with fixed steps (`step`).");
   v.table("output", c.output, "What is written.");

@@ -1,11 +1,11 @@
 #pragma once
 
+#include "ehdjet/core/schedule.hpp"
 #include "ehdjet/jet/jet_columns.hpp"
 #include "ehdjet/jet/jet_state.hpp"
 #include "ehdjet/jet/ledger.hpp"
 
 #include <cstddef>
-#include <cstdint>
 #include <limits>
 #include <span>
 #include <string>
@@ -36,19 +36,8 @@ public:
   virtual void observe(const JetSnapshot& /*snapshot*/) {}
   /// A bead has left the chain.
   virtual void deposit(const DepositedBead& /*bead*/) {}
-};
-
-/// Multiples k*interval, k = 0, 1, ..., computed without accumulating round-off.
-class Schedule {
-public:
-  explicit Schedule(double interval)
-      : interval_(interval) {}
-  [[nodiscard]] double next() const { return static_cast<double>(count_) * interval_; }
-  void advance() { ++count_; }
-
-private:
-  double interval_; // [s]
-  std::uint64_t count_ = 0;
+  /// The chain has been cut anew; only if the run records refinements.
+  virtual void refined(const RefinementRecord& /*record*/) {}
 };
 
 } // namespace ehdjet

@@ -63,7 +63,8 @@ private:
     double theta;
   };
 
-  double choose_step();
+  [[nodiscard]] double next_stop(double end_time) const;
+  double choose_step(double stop);
   double attempt_step(double h);
   std::optional<FoundEvent> first_event(const DenseStep& step);
   [[nodiscard]] double expected_time(const DenseStep& step) const;
@@ -91,6 +92,7 @@ private:
   std::optional<std::size_t> after_event_; // the event that the next step follows
   std::vector<double> snapshot_;           // a state inside a step
   std::vector<DepositedBead> deposited_;
+  std::vector<RefinementRecord> refined_;
 };
 
 } // namespace ehdjet

@@ -1,0 +1,64 @@
+#pragma once
+
+#include "ehdjet/refinement/mesh.hpp"
+#include "ehdjet/refinement/remap.hpp"
+
+#include <cstddef>
+#include <optional>
+
+namespace ehdjet {
+
+/// How volume, mass and charge get onto a new mesh.
+enum class LinkRemap {
+  conservative, ///< along the arc length, every sum and every bump kept (see Remap)
+  paper ///< radius by spline, V = pi a^2 l, one factor that keeps the sum of V; mass and
+        ///< charge in proportion to V
+};
+/// How velocities do.
+enum class VelocityRemap {
+  spline,  ///< Akima
+  momentum ///< m v along the arc length: its sum is kept, kinetic energy can only fall
+};
+/// How stresses do.
+enum class StressRemap {
+  spline,      ///< Akima
+  conservative ///< V sigma along the arc length: its sum is kept, elastic energy can only fall
+};
+
+struct RefinementRule {
+  MeshRule mesh;
+  LinkRemap remap = LinkRemap::conservative;
+  Spread spread = Spread::linear;
+  VelocityRemap velocity = VelocityRemap::spline;
+  StressRemap stress = StressRemap::spline;
+  /// Neighbouring links that are together no longer than this become one; absent: never [m].
+  std::optional<double> coarsen;
+  std::optional<double> collector; ///< h: new beads are not put beyond it [m]
+  /// Bead 0 is the nozzle: the link that is being fed, which grows to 2 l_step, is left alone.
+  bool has_nozzle = true;
+
+  [[nodiscard]] std::size_t first_knot() const { return has_nozzle ? 1 : 0; }
+};
+
+/// What a refinement did.
+struct MeshChange {
+  std::size_t kept = 0;   ///< bead s: beads 0 ... s are untouched, bit for bit
+  std::size_t before = 0; ///< links of the chain
+  std::size_t after = 0;
+  /// max |l/l* - 1| over the new links, l* the arc length they were given: chords are a little
+  /// shorter than arcs (second order).
+  double worst_link = 0;
+};
+
+/// Cuts the jet anew where its links have become too long (model 7). Positions, and by default
+/// velocities and stresses, follow Akima splines over the arc length. A landed leading bead
+/// stays the last bead of the new mesh, where and as it is; a new bead beyond the collector is
+/// put on it. Nothing if no link is too long or the number of beads would not grow.
+std::optional<MeshChange> refine_jet(JetState& jet, const RefinementRule& rule);
+
+/// Joins neighbouring links that are together no longer than `rule.coarsen` (model 7): volume, mass,
+/// charge, momentum and V sigma are kept. The insertion zone and a landed bead are left alone.
+/// Nothing if there are no such links.
+std::optional<MeshChange> coarsen_jet(JetState& jet, const RefinementRule& rule);
+
+} // namespace ehdjet

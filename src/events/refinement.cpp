@@ -1,0 +1,70 @@
+#include "ehdjet/events/refinement.hpp"
+
+#include <algorithm>
+
+namespace ehdjet {
+namespace {
+
+JetTotals totals(const JetState& jet, const Refinement::Recording& recording) {
+  const auto c = jet.columns();
+  CompensatedSum mass, charge, volume;
+  JetTotals sum;
+  for (std::size_t k = 1; k < jet.beads(); ++k) {
+    mass += jet.mass[k], charge += jet.charge[k], volume += jet.volume[k];
+    if (c.has_stress() && recording.elastic_modulus > 0)
+      sum.elastic_energy +=
+          jet.volume[k] * c.stress()[k] * c.stress()[k] / (2 * recording.elastic_modulus);
+  }
+  auto landed = jet.landed.begin();
+  for (std::size_t k = jet.first(); k < jet.beads(); ++k) {
+    if (landed != jet.landed.end() && landed->bead == k) {
+      ++landed;
+      continue;
+    }
+    const Vec3 v = c.velocity()[k];
+    sum.momentum += jet.mass[k] * v;
+    sum.kinetic_energy += jet.mass[k] * v.squaredNorm() / 2;
+  }
+  sum.mass = mass, sum.charge = charge, sum.volume = volume;
+  if (recording.coulomb_energy) sum.coulomb_energy = recording.coulomb_energy(jet);
+  return sum;
+}
+
+JetTotals difference(const JetTotals& after, const JetTotals& before) {
+  return {.mass = after.mass - before.mass,
+          .charge = after.charge - before.charge,
+          .volume = after.volume - before.volume,
+          .momentum = after.momentum - before.momentum,
+          .kinetic_energy = after.kinetic_energy - before.kinetic_energy,
+          .elastic_energy = after.elastic_energy - before.elastic_energy,
+          .coulomb_energy = after.coulomb_energy - before.coulomb_energy};
+}
+
+} // namespace
+
+Refinement::Refinement(const RefinementRule& rule, double interval,
+                       std::optional<Recording> recording)
+    : rule_(rule)
+    , schedule_(interval, 1)
+    , recording_(std::move(recording)) {}
+
+void Refinement::apply(EventContext& context) {
+  JetState& jet = context.jet;
+  while (due(jet)) schedule_.advance();
+  const JetTotals before = recording_ ? totals(jet, *recording_) : JetTotals{};
+  const std::size_t beads_before = jet.links();
+  const auto joined = rule_.coarsen ? coarsen_jet(jet, rule_) : std::nullopt;
+  const auto cut = refine_jet(jet, rule_);
+  auto& count = context.statistics.refinements;
+  count = count.value_or(0) + (joined || cut ? 1 : 0);
+  if (!recording_ || !(joined || cut)) return;
+  context.refined.push_back(
+      {.time = jet.time,
+       .kept = std::min(joined ? joined->kept : jet.links(), cut ? cut->kept : jet.links()),
+       .beads_before = beads_before,
+       .beads_after = jet.links(),
+       .change = difference(totals(jet, *recording_), before),
+       .worst_link = cut ? cut->worst_link : 0});
+}
+
+} // namespace ehdjet

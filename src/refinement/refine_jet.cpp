@@ -1,0 +1,200 @@
+#include "ehdjet/refinement/refine_jet.hpp"
+
+#include "ehdjet/core/compensated_sum.hpp"
+#include "ehdjet/refinement/akima_spline.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace ehdjet {
+namespace {
+
+using Values = std::vector<double>;
+
+double sum(std::span<const double> values) {
+  CompensatedSum total;
+  for (const double v : values) total += v;
+  return total;
+}
+
+// A jet whose beads 0 ... s are those of another one and whose others are still to be filled in.
+JetState with_room(const JetState& old, std::size_t s, std::size_t beads) {
+  JetState jet;
+  jet.time = old.time, jet.has_embryo = old.has_embryo;
+  jet.absorbing_plane = old.absorbing_plane;
+  const std::size_t columns = old.y.size() / old.beads();
+  jet.y.resize(columns * beads);
+  for (std::size_t c = 0; c < columns; ++c)
+    std::copy_n(old.y.begin() + static_cast<std::ptrdiff_t>(c * old.beads()), s + 1,
+                jet.y.begin() + static_cast<std::ptrdiff_t>(c * beads));
+  for (const auto column : {&JetState::mass, &JetState::charge, &JetState::volume}) {
+    (jet.*column)
+        .assign((old.*column).begin(),
+                (old.*column).begin() + static_cast<std::ptrdiff_t>(s + 1));
+    (jet.*column).resize(beads);
+  }
+  for (const LandedBead& b : old.landed) {
+    if (b.bead <= s) jet.landed.push_back(b);
+    if (b.bead == old.links())
+      jet.landed.push_back({.bead = beads - 1, .time = b.time, .radius = b.radius});
+  }
+  return jet;
+}
+
+// One refinement: an old jet, its string and new mesh, and the jet on that mesh.
+class Remeshing {
+public:
+  Remeshing(const JetState& old, const JetString& string, const Mesh& mesh,
+            const RefinementRule& rule)
+      : old_(old)
+      , string_(string)
+      , rule_(rule)
+      , mesh_(mesh)
+      , s_(string.bead(mesh.kept))
+      , jet_(with_room(old, s_, s_ + 1 + mesh.arc_length.size()))
+      , spline_(string.arc_length) {}
+
+  JetState run() {
+    const std::size_t columns = old_.y.size() / old_.beads();
+    for (std::size_t c = 0; c < columns; ++c)
+      interpolate(old_.columns().column(c), fresh(jet_.columns().column(c)));
+    keep_end();
+    // What links carry needs the places of the new beads (the paper's way), or is shared out along
+    // the old arc length.
+    if (rule_.remap == LinkRemap::paper) {
+      remap_radius();
+    } else {
+      const Remap remap = remap_with(rule_.spread);
+      for (const auto column : {&JetState::volume, &JetState::mass, &JetState::charge})
+        std::ranges::copy(remap(behind_s(old_.*column)), fresh(jet_.*column).begin());
+    }
+    if (rule_.velocity == VelocityRemap::momentum)
+      for (std::size_t c = 3; c < JetColumns<double>::kinematic_columns; ++c)
+        average(c, &JetState::mass);
+    if (rule_.stress == StressRemap::conservative && old_.columns().has_stress())
+      average(JetColumns<double>::kinematic_columns, &JetState::volume);
+    keep_landed_record();
+    return std::move(jet_);
+  }
+
+private:
+  // The entries of the new beads, those behind s.
+  [[nodiscard]] std::span<double> fresh(std::span<double> column) const {
+    return column.subspan(s_ + 1);
+  }
+  [[nodiscard]] std::span<const double> behind_s(std::span<const double> column) const {
+    return column.subspan(s_ + 1);
+  }
+  [[nodiscard]] Remap remap_with(Spread spread) const {
+    const auto& knots = string_.arc_length;
+    const double start = knots[mesh_.kept];
+    Values from(knots.begin() + static_cast<std::ptrdiff_t>(mesh_.kept), knots.end());
+    Values to{start};
+    to.insert(to.end(), mesh_.arc_length.begin(), mesh_.arc_length.end());
+    return {std::move(from), std::move(to), spread};
+  }
+  void interpolate(std::span<const double> column, std::span<double> out) {
+    spline_.interpolate(string_.at_knots(column), mesh_.arc_length, out);
+  }
+
+  // The leading bead stays where it is, to the last bit; no other one lies beyond the collector.
+  void keep_end() {
+    const std::size_t columns = old_.y.size() / old_.beads();
+    for (std::size_t c = 0; c < columns; ++c)
+      jet_.columns().column(c).back() = old_.columns().column(c).back();
+    if (!rule_.collector) return;
+    for (double& x : fresh(jet_.columns().position().x)) x = std::min(x, *rule_.collector);
+  }
+  // A bead that rests keeps the velocity and stress of its landing, however they are remapped.
+  void keep_landed_record() {
+    if (!jet_.is_landed(jet_.links())) return;
+    const std::size_t columns = old_.y.size() / old_.beads();
+    for (std::size_t c = 3; c < columns; ++c)
+      jet_.columns().column(c).back() = old_.columns().column(c).back();
+  }
+
+  // A column as the average of itself weighted with what the links carry.
+  void average(std::size_t c, std::vector<double> JetState::*carried) {
+    const auto column = behind_s(old_.columns().column(c));
+    const auto weight = behind_s(old_.*carried);
+    Values product(column.size());
+    std::ranges::transform(column, weight, product.begin(), std::multiplies{});
+    const Values moved = remap_with(Spread::linear)(product);
+    const Values share = remap_with(Spread::linear)(weight);
+    std::ranges::transform(moved, share, fresh(jet_.columns().column(c)).begin(),
+                           std::divides{});
+  }
+
+  // The paper's way. Akima's curve may dip below zero where radii change fast; a radius stays
+  // between those of the two beads it lies between.
+  void remap_radius() {
+    Values radius(string_.knots());
+    for (std::size_t i = 1; i < radius.size(); ++i)
+      radius[i] = link_radius(old_.volume[string_.bead(i)], string_.link(i));
+    radius[0] = radius[1]; // bead 0 owns no link
+    Values a(mesh_.arc_length.size());
+    spline_.interpolate(radius, mesh_.arc_length, a);
+    std::size_t i = mesh_.kept + 1;
+    const auto r = std::as_const(jet_).columns().position();
+    const auto volume = fresh(jet_.volume);
+    for (std::size_t j = 0; j < a.size(); ++j) {
+      while (i + 1 < string_.knots() && string_.arc_length[i] < mesh_.arc_length[j]) ++i;
+      const auto [low, high] = std::minmax(radius[i - 1], radius[i]);
+      const double within = std::clamp(a[j], low, high);
+      const double length = (r[s_ + 1 + j] - r[s_ + j]).norm();
+      volume[j] = std::numbers::pi * within * within * length;
+    }
+    const double old_volume = sum(behind_s(old_.volume));
+    const double factor = old_volume / sum(volume);
+    for (double& v : volume) v *= factor;
+    for (const auto column : {&JetState::mass, &JetState::charge}) {
+      const double density = sum(behind_s(old_.*column)) / old_volume;
+      std::ranges::transform(volume, fresh(jet_.*column).begin(),
+                             [density](double v) { return density * v; });
+    }
+  }
+
+  const JetState& old_;
+  const JetString& string_;
+  const RefinementRule& rule_;
+  const Mesh& mesh_;
+  std::size_t s_; // bead of knot s
+  JetState jet_;
+  AkimaSpline spline_;
+};
+
+// max |l/l* - 1| over the new links.
+double worst_link(const JetState& jet, std::size_t s, const JetString& string,
+                  const Mesh& mesh) {
+  const auto r = jet.columns().position();
+  double worst = 0, before = string.arc_length[mesh.kept];
+  for (std::size_t j = 0; j < mesh.arc_length.size(); ++j) {
+    const double chord = (r[s + 1 + j] - r[s + j]).norm();
+    worst = std::max(worst, std::abs(chord / (mesh.arc_length[j] - before) - 1));
+    before = mesh.arc_length[j];
+  }
+  return worst;
+}
+
+} // namespace
+
+std::optional<MeshChange> refine_jet(JetState& jet, const RefinementRule& rule) {
+  if (jet.links() < jet.first()) return std::nullopt;
+  const JetString string(jet);
+  const auto mesh = plan_mesh(string, jet, rule.first_knot(), rule.mesh);
+  if (!mesh) return std::nullopt;
+  const std::size_t s = string.bead(mesh->kept);
+  JetState refined = Remeshing(jet, string, *mesh, rule).run();
+  const MeshChange change{.kept = s,
+                          .before = jet.links(),
+                          .after = refined.links(),
+                          .worst_link = worst_link(refined, s, string, *mesh)};
+  jet = std::move(refined);
+  return change;
+}
+
+} // namespace ehdjet
