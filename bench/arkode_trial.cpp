@@ -184,7 +184,7 @@ private:
   void apply_events(bool root) {
     array<int, 3> found{};
     if (root) check(ERKStepGetRootInfo(arkode_, found.data()));
-    EventContext context{jet_, ledger_, statistics_, deposited_};
+    EventContext context{jet_, ledger_, statistics_, deposited_, refined_};
     const size_t size = jet_.y.size();
     bool any = false;
     for (size_t i = 0; i < events_.size(); ++i) {
@@ -216,6 +216,7 @@ private:
   Ledger ledger_;
   RunStatistics statistics_;
   std::vector<DepositedBead> deposited_;
+  std::vector<RefinementRecord> refined_;
   SUNContext context_ = nullptr;
   N_Vector y_ = nullptr;
   void* arkode_ = nullptr;

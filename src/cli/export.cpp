@@ -19,7 +19,8 @@ namespace {
 struct Options {
   std::string run, output;
   bool observables = false, beads = false, deposit = false, xyz = false, vtk = false;
-  std::optional<double> time;
+  bool refinements = false, resolving_power = false;
+  std::optional<double> time, from;
   bool force = false;
 };
 
@@ -37,6 +38,8 @@ void run_export(const Options& options) {
   if (options.observables) export_observables(run, output);
   if (options.beads) export_beads(run, options.time, output);
   if (options.deposit) export_deposit(run, output);
+  if (options.refinements) export_refinements(run, output);
+  if (options.resolving_power) export_resolving_power(run, options.from, output);
   if (options.xyz) export_xyz(run, options.time, output);
 }
 
@@ -54,6 +57,11 @@ void add_export_command(CLI::App& app) {
   format->add_flag("--beads", options->beads,
                    "CSV: the beads of one frame, the last one by default");
   format->add_flag("--deposit", options->deposit, "CSV: the deposited fibre");
+  format->add_flag("--refinements", options->refinements,
+                   "CSV: what each mesh refinement did");
+  CLI::Option* power =
+      format->add_flag("--resolving-power", options->resolving_power,
+                       "CSV: mean and least resolving power link_length/l along the jet");
   format->add_flag("--xyz", options->xyz,
                    "Extended XYZ: all frames (OVITO) or, with --time, one (also VMD)");
   format->add_flag("--vtk", options->vtk,
@@ -61,6 +69,11 @@ void add_export_command(CLI::App& app) {
   format->require_option(1);
   command->add_option("--time", options->time, "Take the frame nearest to this time [s]")
       ->type_name("T");
+  command
+      ->add_option("--from", options->from,
+                   "Mean over times from this one on [s]; default: the later half")
+      ->type_name("T")
+      ->needs(power);
   command
       ->add_option(
           "-o,--output", options->output,

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <new>
 
+#include "bench.hpp"
 #include "check.hpp"
 #include "export.hpp"
 #include "forces.hpp"
@@ -28,6 +29,7 @@ int main(int argc, char** argv) {
     ehdjet::cli::add_forces_command(app);
     ehdjet::cli::add_export_command(app);
     ehdjet::cli::add_plot_command(app);
+    ehdjet::cli::add_bench_command(app);
     app.parse(argc, argv); // runs the subcommand
   } catch (const CLI::ParseError& e) {
     return app.exit(e) == 0 ? 0 : 2;

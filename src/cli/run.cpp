@@ -42,6 +42,12 @@ void add_observers(Simulation& simulation, RunFile& file, const SceneConfig& con
   if (config.output.frames)
     simulation.add(file.frames(*config.output.frames, simulation.dynamics().has_stress()));
   if (config.output.deposit) simulation.add(file.deposit());
+  if (config.output.refinements != RefinementRecords::none)
+    simulation.add(
+        file.refinements(config.output.refinements == RefinementRecords::energies));
+  if (config.output.resolving_power)
+    simulation.add(
+        file.resolving_power(*config.output.resolving_power, config.nozzle->link_length));
 }
 
 std::string summary(const Simulation& s, const Scene& scene,
@@ -65,6 +71,8 @@ std::string summary(const Simulation& s, const Scene& scene,
   if (scene.config.nozzle || scene.config.collector)
     text += fmt::format("  events        {} insertions, {} releases, {} landings\n",
                         cost.insertions, cost.releases, cost.landings);
+  if (cost.refinements)
+    text += fmt::format("  refinements   {} that changed the mesh\n", *cost.refinements);
   text += fmt::format("  cost          {} evaluations, {} steps, {} rejected, {:.2f} s\n",
                       cost.evaluations, cost.steps, cost.rejected, cost.wall_time);
   if (s.dynamics().coincident_pairs() > 0)

@@ -1,9 +1,13 @@
 #include "ehdjet/events/refinement.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
 namespace ehdjet {
 namespace {
+
+constexpr double round_off = 1e-12; // of times
 
 JetTotals totals(const JetState& jet, const Refinement::Recording& recording) {
   const auto c = jet.columns();
@@ -43,21 +47,53 @@ JetTotals difference(const JetTotals& after, const JetTotals& before) {
 } // namespace
 
 Refinement::Refinement(const RefinementRule& rule, double interval,
-                       std::optional<Recording> recording)
+                       std::optional<Recording> recording, bool at_step_ends)
     : rule_(rule)
     , schedule_(interval, 1)
-    , recording_(std::move(recording)) {}
+    , recording_(std::move(recording))
+    , at_step_ends_(at_step_ends) {}
+
+bool Refinement::due(const JetState& jet) const {
+  const double t = schedule_.next(), late = jet.time - t;
+  if (at_step_ends_) return late >= -round_off * t;
+  return std::abs(late) <= round_off * t && changes(jet);
+}
+
+std::optional<double> Refinement::locate(const DenseStep& step) {
+  pass(step.t0); // multiples at which there was nothing to do
+  const double end = step.time(1);
+  for (Schedule next = schedule_; next.next() <= end; next.advance()) {
+    const double theta = std::min((next.next() - step.t0) / step.h, 1.0);
+    probe_ = step.jet;
+    step.state(theta, probe_.y);
+    if (!changes(probe_)) continue;
+    located_ = next.next();
+    return theta;
+  }
+  return std::nullopt;
+}
+
+void Refinement::pass(double t) {
+  while (schedule_.next() <= t * (1 + round_off)) schedule_.advance();
+}
+
+bool Refinement::changes(const JetState& jet) const {
+  if (rule_.coarsen)
+    if (JetState copy = jet; coarsen_jet(copy, rule_)) return true;
+  return plan_mesh(JetString(jet), jet, rule_.first_knot(), rule_.mesh).has_value();
+}
 
 void Refinement::apply(EventContext& context) {
   JetState& jet = context.jet;
-  while (due(jet)) schedule_.advance();
+  pass(jet.time);
   const JetTotals before = recording_ ? totals(jet, *recording_) : JetTotals{};
   const std::size_t beads_before = jet.links();
   const auto joined = rule_.coarsen ? coarsen_jet(jet, rule_) : std::nullopt;
   const auto cut = refine_jet(jet, rule_);
+  if (!joined && !cut) return;
   auto& count = context.statistics.refinements;
-  count = count.value_or(0) + (joined || cut ? 1 : 0);
-  if (!recording_ || !(joined || cut)) return;
+  count = count.value_or(0) + 1;
+  if (!recording_) return;
   context.refined.push_back(
       {.time = jet.time,
        .kept = std::min(joined ? joined->kept : jet.links(), cut ? cut->kept : jet.links()),

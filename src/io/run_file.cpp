@@ -26,6 +26,15 @@ std::unique_ptr<Observer> RunFile::deposit() {
   return make_deposit(*writer_);
 }
 
+std::unique_ptr<Observer> RunFile::refinements(bool with_coulomb_energy) {
+  return make_refinements(*writer_, with_coulomb_energy);
+}
+
+std::unique_ptr<Observer> RunFile::resolving_power(double interval, double link_length) {
+  EHDJET_EXPECTS(interval > 0 && link_length > 0);
+  return make_resolving_power(*writer_, interval, link_length);
+}
+
 void RunFile::flush() {
   writer_->flush();
 }

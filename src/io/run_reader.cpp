@@ -155,6 +155,13 @@ bool RunReader::has_deposit() const {
   return impl_->has("deposit");
 }
 
+bool RunReader::has_refinements() const {
+  return impl_->has("refinements");
+}
+bool RunReader::has_resolving_power() const {
+  return impl_->has("resolving_power");
+}
+
 std::vector<std::string> RunReader::columns() const {
   impl_->require("observables", "observables", "output.observables");
   return impl_->guard([&] { return names_in(impl_->file, "observables"); });
@@ -223,6 +230,47 @@ DepositTable RunReader::deposit() const {
                         column("stress"), column("landing_radius"),
                         column("radius"), column("mass"),
                         column("charge"), column("volume")};
+  });
+}
+
+RefinementTable RunReader::refinements() const {
+  impl_->require("refinements", "record of refinements", "output.refinements");
+  return impl_->guard([&] {
+    const hsize_t rows = impl_->common_length("refinements");
+    const auto column = [&](const char* name) {
+      return impl_->rows<double>(std::string("refinements/") + name, 0, rows);
+    };
+    const bool with_coulomb = hdf5::has(impl_->file, "refinements/coulomb_energy_change");
+    return RefinementTable{.time = column("time"),
+                           .kept = column("kept"),
+                           .beads_before = column("beads_before"),
+                           .beads_after = column("beads_after"),
+                           .mass = column("mass_change"),
+                           .charge = column("charge_change"),
+                           .volume = column("volume_change"),
+                           .px = column("momentum_change_x"),
+                           .py = column("momentum_change_y"),
+                           .pz = column("momentum_change_z"),
+                           .kinetic_energy = column("kinetic_energy_change"),
+                           .elastic_energy = column("elastic_energy_change"),
+                           .coulomb_energy = with_coulomb ? column("coulomb_energy_change")
+                                                          : std::vector<double>{},
+                           .worst_link = column("worst_link")};
+  });
+}
+
+ResolvingPowerTable RunReader::resolving_power() const {
+  impl_->require("resolving_power", "resolving power", "output.resolving_power");
+  return impl_->guard([&] {
+    Impl& file = *impl_;
+    const hsize_t places = hdf5::length(file.data_set("resolving_power/lambda"));
+    const hsize_t samples = // the time of a sample is written last
+        std::min(hdf5::length(file.data_set("resolving_power/time")),
+                 hdf5::length(file.data_set("resolving_power/r")) / places);
+    return ResolvingPowerTable{
+        .lambda = file.rows<double>("resolving_power/lambda", 0, places),
+        .time = file.rows<double>("resolving_power/time", 0, samples),
+        .r = file.rows<double>("resolving_power/r", 0, samples * places)};
   });
 }
 

@@ -103,6 +103,8 @@ void write_statistics(hid_t file, const RunStatistics& statistics) {
   hdf5::write_attribute(group, "insertions", statistics.insertions);
   hdf5::write_attribute(group, "releases", statistics.releases);
   hdf5::write_attribute(group, "landings", statistics.landings);
+  if (statistics.refinements)
+    hdf5::write_attribute(group, "refinements", *statistics.refinements);
   hdf5::write_attribute(group, "coincident_pairs", statistics.coincident_pairs);
   hdf5::write_attribute(group, "shortest_step", statistics.shortest_step);
   hdf5::write_attribute(group, "longest_step", statistics.longest_step);

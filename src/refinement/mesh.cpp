@@ -20,8 +20,9 @@ double observable(const JetString& string, const JetState& jet, MeshWeight weigh
                   std::size_t knot) { // of the link that ends at the knot
   const auto r = jet.columns().position();
   const auto bead = [&](std::size_t i) { return string.bead(i); };
-  const auto curvature = [&](std::size_t i) {
-    if (i == 0 || i + 1 == string.knots()) return 0.0;
+  const auto curvature = [&](std::size_t i) { // an end bends like its neighbour
+    if (string.knots() < 3) return 0.0;
+    i = std::clamp<std::size_t>(i, 1, string.knots() - 2);
     const Vec3 at = r[bead(i)];
     return curvature_vector(r[bead(i - 1)] - at, r[bead(i + 1)] - at).norm();
   };
@@ -121,8 +122,9 @@ std::optional<Mesh> weighted_mesh(const JetString& string, const JetState& jet,
 std::optional<Mesh> plan_mesh(const JetString& string, const JetState& jet,
                               std::size_t first_knot, const MeshRule& rule) {
   EHDJET_EXPECTS(rule.length > 0 && rule.shortest <= rule.longest);
-  return rule.weight == MeshWeight::uniform ? uniform_mesh(string, first_knot, rule)
-                                            : weighted_mesh(string, jet, first_knot, rule);
+  const bool weighted = rule.weight != MeshWeight::uniform && rule.strength > 0;
+  return weighted ? weighted_mesh(string, jet, first_knot, rule)
+                  : uniform_mesh(string, first_knot, rule);
 }
 
 } // namespace ehdjet

@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
+#include <numeric>
 #include <span>
 #include <utility>
 #include <vector>
@@ -19,6 +21,12 @@ double sum(std::span<const double> values) {
   CompensatedSum total;
   for (const double v : values) total += v;
   return total;
+}
+
+Values cumulative(std::span<const double> values) { // from 0 on
+  Values sums(values.size() + 1, 0.0);
+  std::partial_sum(values.begin(), values.end(), sums.begin() + 1);
+  return sums;
 }
 
 // A jet whose beads 0 ... s are those of another one and whose others are still to be filled in.
@@ -60,8 +68,11 @@ public:
 
   JetState run() {
     const std::size_t columns = old_.y.size() / old_.beads();
-    for (std::size_t c = 0; c < columns; ++c)
-      interpolate(old_.columns().column(c), fresh(jet_.columns().column(c)));
+    for (std::size_t c = 0; c < columns; ++c) {
+      Values values = string_.at_knots(old_.columns().column(c));
+      if (c >= JetColumns<double>::kinematic_columns) values[0] = values[1]; // no link
+      spline_.interpolate(values, mesh_.arc_length, fresh(jet_.columns().column(c)));
+    }
     keep_end();
     // What links carry needs the places of the new beads (the paper's way), or is shared out along
     // the old arc length.
@@ -97,9 +108,6 @@ private:
     to.insert(to.end(), mesh_.arc_length.begin(), mesh_.arc_length.end());
     return {std::move(from), std::move(to), spread};
   }
-  void interpolate(std::span<const double> column, std::span<double> out) {
-    spline_.interpolate(string_.at_knots(column), mesh_.arc_length, out);
-  }
 
   // The leading bead stays where it is, to the last bit; no other one lies beyond the collector.
   void keep_end() {
@@ -117,15 +125,18 @@ private:
       jet_.columns().column(c).back() = old_.columns().column(c).back();
   }
 
-  // A column as the average of itself weighted with what the links carry.
+  // A column as the average of itself weighted with what the links carry: shared out along the
+  // carried quantity, so that the sum of the product is kept however that was remapped.
   void average(std::size_t c, std::vector<double> JetState::*carried) {
     const auto column = behind_s(old_.columns().column(c));
     const auto weight = behind_s(old_.*carried);
+    const auto new_weight = fresh(jet_.*carried);
     Values product(column.size());
     std::ranges::transform(column, weight, product.begin(), std::multiplies{});
-    const Values moved = remap_with(Spread::linear)(product);
-    const Values share = remap_with(Spread::linear)(weight);
-    std::ranges::transform(moved, share, fresh(jet_.columns().column(c)).begin(),
+    Values from = cumulative(weight), to = cumulative(new_weight);
+    to.back() = from.back();
+    const Values moved = Remap(std::move(from), std::move(to), Spread::linear)(product);
+    std::ranges::transform(moved, new_weight, fresh(jet_.columns().column(c)).begin(),
                            std::divides{});
   }
 

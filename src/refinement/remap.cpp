@@ -21,33 +21,32 @@ struct FreeInterpolation {
 
 Remap::Remap(std::vector<double> from, std::vector<double> to, Spread spread)
     : from_(std::move(from))
-    , to_(std::move(to))
-    , spread_(spread) {
+    , to_(std::move(to)) {
   EHDJET_EXPECTS(from_.size() >= 2 && to_.size() >= 2);
   EHDJET_EXPECTS(from_.front() == to_.front() && from_.back() == to_.back());
+  constexpr std::size_t least_knots_of_a_cubic = 3;
+  if (spread == Spread::linear || from_.size() < least_knots_of_a_cubic) find_overlaps();
 }
 
 std::vector<double> Remap::operator()(std::span<const double> quantity) const {
   EHDJET_EXPECTS(quantity.size() + 1 == from_.size());
-  constexpr std::size_t least_knots_of_a_cubic = 3;
-  return spread_ == Spread::linear || from_.size() < least_knots_of_a_cubic
-             ? evenly(quantity)
-             : smoothly(quantity);
+  return overlaps_.empty() ? smoothly(quantity) : evenly(quantity);
+}
+
+void Remap::find_overlaps() {
+  overlaps_.reserve(from_.size() + to_.size());
+  for (std::size_t i = 0, j = 0; i + 1 < from_.size() && j + 1 < to_.size();) {
+    const double start = std::max(from_[i], to_[j]);
+    const double end = std::min(from_[i + 1], to_[j + 1]);
+    if (end > start) overlaps_.push_back({i, j, (end - start) / (from_[i + 1] - from_[i])});
+    (from_[i + 1] < to_[j + 1] ? i : j) += 1;
+  }
 }
 
 // Overlap by overlap rather than as a difference of cumulative sums: a small link keeps its digits.
 std::vector<double> Remap::evenly(std::span<const double> quantity) const {
   std::vector<double> moved(to_.size() - 1, 0.0);
-  std::size_t i = 0; // old link
-  for (std::size_t j = 0; j < moved.size(); ++j) {
-    for (;; ++i) {
-      const double start = std::max(from_[i], to_[j]);
-      const double end = std::min(from_[i + 1], to_[j + 1]);
-      if (end > start)
-        moved[j] += quantity[i] * ((end - start) / (from_[i + 1] - from_[i]));
-      if (from_[i + 1] >= to_[j + 1] || i + 2 >= from_.size()) break;
-    }
-  }
+  for (const Overlap& o : overlaps_) moved[o.to] += quantity[o.from] * o.share;
   return moved;
 }
 

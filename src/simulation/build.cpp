@@ -99,7 +99,8 @@ std::unique_ptr<Refinement> build_refinement(const SceneConfig& c) {
     };
   }
   return std::make_unique<Refinement>(refinement_rule(c), c.refinement->interval,
-                                      std::move(recording));
+                                      std::move(recording),
+                                      c.integrator.events == EventPlacement::step_end);
 }
 
 // Without elasticity, or without viscosity to hold it, stress is exactly zero at all times.

@@ -89,20 +89,22 @@ void Simulation::run_until(double end_time) {
   const WallClock clock;
   const double wall_before = statistics_.wall_time;
   while (jet_.time < end_time) {
-    const double stop = next_stop(end_time), to_stop = stop - jet_.time;
-    const double wanted = choose_step(stop);
+    const double to_end = end_time - jet_.time;
+    const double wanted = choose_step();
     const bool last =
-        wanted >= (1 - 1e-9) * to_stop; // leaves no remainder of round-off size
-    const double h = attempt_step(last ? to_stop : wanted);
-    if (h == to_stop) step_ = std::max(step_, wanted); // cut short says nothing of the next
+        wanted >= (1 - 1e-9) * to_end; // leaves no remainder of round-off size
+    const double h = attempt_step(last ? to_end : wanted);
     const DenseStep step(jet_.time, h, jet_, *integrator_, *dynamics_);
 
     const auto found = events_located_ ? first_event(step) : std::nullopt;
     const double theta = found ? found->theta : 1.0;
-    const bool reached_stop = theta == 1 && h == to_stop; // exactly, whatever the round-off
     CompensatedSum next_time = time_;
     next_time += theta * h;
-    const double t1 = reached_stop ? stop : double(next_time);
+    if (!found && h == to_end)
+      next_time = CompensatedSum(end_time); // whatever the round-off
+    if (const auto t = found ? events_[found->index]->scheduled_time() : std::nullopt)
+      next_time = CompensatedSum(*t);
+    const double t1 = next_time;
     show_until(step, t1);
     expected_event_ = found || !events_located_ ? never : expected_time(step);
 
@@ -111,7 +113,7 @@ void Simulation::run_until(double end_time) {
     } else {
       integrator_->commit(jet_.y);
     }
-    time_ = reached_stop ? CompensatedSum(stop) : next_time;
+    time_ = next_time;
     jet_.time = t1;
     dynamics_->prescribe(jet_.time, jet_.y);
     apply_events(found ? found->index : events_.size());
@@ -123,14 +125,7 @@ void Simulation::run_until(double end_time) {
       show(*o, {o->next_time(), std::as_const(jet_).columns(), jet_, ledger_, statistics_});
 }
 
-// The end of the run, or an earlier time at which an event wants a step to end.
-double Simulation::next_stop(double end_time) const {
-  double stop = end_time;
-  for (const auto& e : events_) stop = std::min(stop, e->next_time());
-  return stop;
-}
-
-double Simulation::choose_step(double stop) {
+double Simulation::choose_step() {
   if (limits_.fixed) return *limits_.fixed;
   if (step_ == 0) {
     step_ =
@@ -142,8 +137,6 @@ double Simulation::choose_step(double stop) {
   double h = std::min(step_, limits_.longest);
   const double remaining = aim_beyond * (expected_event_ - jet_.time);
   if (remaining > 0 && remaining < 2 * h) h = remaining > h ? remaining / 2 : remaining;
-  if (const double to_stop = stop - jet_.time; h < to_stop && to_stop < 2 * h)
-    h = to_stop / 2;
   return h;
 }
 

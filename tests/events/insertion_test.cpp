@@ -38,7 +38,10 @@ struct Books {
   Ledger ledger;
   RunStatistics statistics;
   std::vector<DepositedBead> deposited;
-  EventContext with(JetState& jet) { return {jet, ledger, statistics, deposited}; }
+  std::vector<RefinementRecord> refined;
+  EventContext with(JetState& jet) {
+    return {jet, ledger, statistics, deposited, refined};
+  }
 };
 
 TEST(NewBead, carries_what_a_cylinder_of_one_link_holds) {

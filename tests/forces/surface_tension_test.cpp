@@ -1,4 +1,5 @@
 #include "ehdjet/forces/surface_tension.hpp"
+#include "ehdjet/jet/curvature.hpp"
 
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>

@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <functional>
+#include <numbers>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -112,15 +113,17 @@ TEST_F(Export, deposit_has_the_documented_columns_and_keeps_every_bit) {
   const auto [header, rows] =
       csv(folder_, [&](TextOutput& to) { export_deposit(run, to); });
   EXPECT_EQ(header, "time_s,removal_time_s,x_m,y_m,z_m,vx_m_s,vy_m_s,vz_m_s,stress_pa,"
-                    "landing_radius_m,radius_m,mass_kg,charge_c,volume_m3");
+                    "landing_radius_m,radius_m,mass_kg,charge_c,volume_m3,arc_length_m");
   ASSERT_EQ(rows.size(), 9U);
+  double arc_length = 0;
   for (std::size_t k = 0; k < rows.size(); ++k) {
     const DepositedBead d = fabricated_deposit(k);
     const Vec3 &r = d.bead.position, &v = d.bead.velocity;
+    arc_length += d.bead.volume / (std::numbers::pi * d.radius * d.radius);
     const std::vector<double> expected = {
         d.time,   d.removal_time, r.x(),         r.y(),         r.z(),
         v.x(),    v.y(),          v.z(),         d.bead.stress, d.landing_radius,
-        d.radius, d.bead.mass,    d.bead.charge, d.bead.volume};
+        d.radius, d.bead.mass,    d.bead.charge, d.bead.volume, arc_length};
     EXPECT_EQ(rows[k], expected);
   }
 }

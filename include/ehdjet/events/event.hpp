@@ -3,7 +3,6 @@
 #include "ehdjet/events/dense_step.hpp"
 #include "ehdjet/jet/ledger.hpp"
 
-#include <limits>
 #include <optional>
 #include <string_view>
 #include <vector>
@@ -20,17 +19,11 @@ struct EventContext {
 };
 
 /// Something that happens to the chain: at the root of a continuous function of the state (model 4
-/// and 5), located inside a step on the dense output, or at a given time, where a step ends.
+/// and 5) or at a given time, located inside a step on the dense output.
 class Event {
 public:
   virtual ~Event() = default;
   [[nodiscard]] virtual std::string_view name() const = 0;
-
-  /// Time at which a step must end so that the event can happen then; infinity for events that
-  /// follow from the state [s].
-  [[nodiscard]] virtual double next_time() const {
-    return std::numeric_limits<double>::infinity();
-  }
 
   /// Whether the state calls for the event now: at the end of a step (events = "step-end"), or
   /// right after another event at the same instant.
@@ -38,6 +31,9 @@ public:
 
   /// First theta in (0, 1] at which the event happens and must end the step, if it does.
   [[nodiscard]] virtual std::optional<double> locate(const DenseStep& step) = 0;
+
+  /// The exact time of an event that was located and that happens at given times [s].
+  [[nodiscard]] virtual std::optional<double> scheduled_time() const { return {}; }
 
   /// When the event may be expected, from the step just made: theta > 1, a guess for the choice
   /// of the next step size only.

@@ -21,14 +21,14 @@ public:
   };
 
   /// `interval`: t_ref [s]. Without `recording` nothing but the mesh is computed.
+  /// `at_step_ends`: happens at the end of the step that contains the multiple of t_ref.
   Refinement(const RefinementRule& rule, double interval,
-             std::optional<Recording> recording = {});
+             std::optional<Recording> recording = {}, bool at_step_ends = false);
   [[nodiscard]] std::string_view name() const override { return "refinement"; }
-  [[nodiscard]] double next_time() const override { return schedule_.next(); }
-  [[nodiscard]] bool due(const JetState& jet) const override {
-    return jet.time >= schedule_.next();
-  }
-  [[nodiscard]] std::optional<double> locate(const DenseStep&) override { return {}; }
+  [[nodiscard]] bool due(const JetState& jet) const override;
+  /// A multiple of t_ref ends a step only if there is something to do.
+  [[nodiscard]] std::optional<double> locate(const DenseStep& step) override;
+  [[nodiscard]] std::optional<double> scheduled_time() const override { return located_; }
   [[nodiscard]] std::optional<double> predict(const DenseStep&) const override {
     return {};
   }
@@ -36,9 +36,15 @@ public:
   [[nodiscard]] bool restarts_motion() const override { return true; }
 
 private:
+  void pass(double t);
+  [[nodiscard]] bool changes(const JetState& jet) const;
+
   RefinementRule rule_;
   Schedule schedule_;
+  double located_ = 0; // the multiple that ends the step [s]
+  JetState probe_;     // the jet inside a step
   std::optional<Recording> recording_;
+  bool at_step_ends_;
 };
 
 } // namespace ehdjet

@@ -17,8 +17,18 @@ void export_observables(const RunReader& run, TextOutput& output);
 /// One row per bead of the frame nearest to `time`, the last one by default (CSV).
 void export_beads(const RunReader& run, std::optional<double> time, TextOutput& output);
 
-/// One row per deposited bead (CSV).
+/// One row per deposited bead (CSV), with the arc length of the fibre up to the end of its link,
+/// from the first bead that left the chain; links are as long as when they left.
 void export_deposit(const RunReader& run, TextOutput& output);
+
+/// One row per refinement (CSV).
+void export_refinements(const RunReader& run, TextOutput& output);
+
+/// Time mean and minimum of the resolving power at each lambda (CSV), over the samples from time
+/// `from` on [s]; by default the later half of the run.
+/// errors : InputError if there is no sample that late
+void export_resolving_power(const RunReader& run, std::optional<double> from,
+                            TextOutput& output);
 
 /// All frames, or the one nearest to `time`, as extended XYZ: OVITO reads all of it; VMD wants
 /// the same number of beads in every frame, so give it one frame.

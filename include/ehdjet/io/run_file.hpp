@@ -36,6 +36,9 @@ public:
   std::unique_ptr<Observer> observables(double interval);
   std::unique_ptr<Observer> frames(double interval, bool with_stress);
   std::unique_ptr<Observer> deposit();
+  std::unique_ptr<Observer> refinements(bool with_coulomb_energy);
+  /// R = link_length/l along the jet; `link_length`: l_step [m].
+  std::unique_ptr<Observer> resolving_power(double interval, double link_length);
 
   /// Makes everything written so far readable by others.
   void flush();

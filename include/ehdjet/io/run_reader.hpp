@@ -28,6 +28,21 @@ struct DepositTable {
   [[nodiscard]] std::size_t beads() const { return time.size(); }
 };
 
+/// What each refinement did, as a run file has it. SI units.
+struct RefinementTable {
+  std::vector<double> time, kept, beads_before, beads_after; ///< counts as doubles
+  std::vector<double> mass, charge, volume, px, py, pz, kinetic_energy, elastic_energy;
+  std::vector<double> coulomb_energy; ///< empty if the run did not record it
+  std::vector<double> worst_link;
+};
+
+/// Samples of R = l_step/l along the jet.
+struct ResolvingPowerTable {
+  std::vector<double> lambda; ///< places along the jet, 0 ... 1
+  std::vector<double> time;   ///< of each sample [s]
+  std::vector<double> r;      ///< (time * lambda), sample after sample
+};
+
 /// Reads what a RunFile wrote; the run may have been killed or be still going on.
 ///
 /// errors : InputError with the path if the file is missing, no HDF5 file, truncated, no run or
@@ -50,6 +65,8 @@ public:
   [[nodiscard]] bool has_observables() const;
   [[nodiscard]] bool has_frames() const;
   [[nodiscard]] bool has_deposit() const;
+  [[nodiscard]] bool has_refinements() const;
+  [[nodiscard]] bool has_resolving_power() const;
 
   /// Names of the observables, alphabetically.
   [[nodiscard]] std::vector<std::string> columns() const;
@@ -62,6 +79,8 @@ public:
   [[nodiscard]] std::size_t nearest_frame(double time) const;
 
   [[nodiscard]] DepositTable deposit() const;
+  [[nodiscard]] RefinementTable refinements() const;
+  [[nodiscard]] ResolvingPowerTable resolving_power() const;
 
 private:
   struct Impl;

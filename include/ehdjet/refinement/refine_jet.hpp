@@ -45,15 +45,18 @@ struct MeshChange {
   std::size_t kept = 0;   ///< bead s: beads 0 ... s are untouched, bit for bit
   std::size_t before = 0; ///< links of the chain
   std::size_t after = 0;
-  /// max |l/l* - 1| over the new links, l* the arc length they were given: chords are a little
-  /// shorter than arcs (second order).
+  /// max |l/l* - 1| over the new links, l* the arc length they were given along the old chords:
+  /// the curve through the beads is a little longer (second order).
   double worst_link = 0;
 };
 
 /// Cuts the jet anew where its links have become too long (model 7). Positions, and by default
 /// velocities and stresses, follow Akima splines over the arc length. A landed leading bead
 /// stays the last bead of the new mesh, where and as it is; a new bead beyond the collector is
-/// put on it. Nothing if no link is too long or the number of beads would not grow.
+/// put on it. Interior beads that have landed before the leading one lose their record and land
+/// anew. Nothing if no link is too long or the number of beads would not grow. Done twice, it
+/// does nothing the second time on a straight jet; on a curved one, whose finer mesh is a little
+/// longer, it may add a few beads once more.
 std::optional<MeshChange> refine_jet(JetState& jet, const RefinementRule& rule);
 
 /// Joins neighbouring links that are together no longer than `rule.coarsen` (model 7): volume, mass,

@@ -29,11 +29,18 @@ public:
   [[nodiscard]] std::vector<double> operator()(std::span<const double> quantity) const;
 
 private:
+  /// What of an old link lies in a new one.
+  struct Overlap {
+    std::size_t from, to;
+    double share; // of the old link
+  };
+
+  void find_overlaps();
   [[nodiscard]] std::vector<double> evenly(std::span<const double> quantity) const;
   [[nodiscard]] std::vector<double> smoothly(std::span<const double> quantity) const;
 
   std::vector<double> from_, to_;
-  Spread spread_;
+  std::vector<Overlap> overlaps_; // of the even spread
 };
 
 } // namespace ehdjet

@@ -108,14 +108,14 @@ struct RefinementConfig {
   double length = 0;   ///< L~ [m]
   double interval = 0; ///< t_ref [s]
   RefinementRemap remap = RefinementRemap::conservative;
-  std::optional<RefinementSpread> spread; ///< conservative remap only; linear
+  std::optional<RefinementSpread> spread = {}; ///< conservative remap only; linear
   ColumnRemap velocity = ColumnRemap::spline;
   ColumnRemap stress = ColumnRemap::spline;
   RefinementWeight weight = RefinementWeight::uniform;
-  std::optional<double> weight_strength;   ///< weighted meshes only; 1 [-]
-  std::optional<double> shortest, longest; ///< links of a weighted mesh [m]
-  std::optional<double> coarsen;           ///< join links together shorter than this [m]
-  std::optional<std::size_t> max_beads;
+  std::optional<double> weight_strength = {};        ///< weighted meshes only; 1 [-]
+  std::optional<double> shortest = {}, longest = {}; ///< links of a weighted mesh [m]
+  std::optional<double> coarsen = {}; ///< join links together shorter than this [m]
+  std::optional<std::size_t> max_beads = {};
   bool operator==(const RefinementConfig&) const = default;
 };
 

@@ -284,9 +284,10 @@ void describe(V& v, OutputConfig& c) {
              "time between frames of all beads", "none are written");
   v.optional("deposit", c.deposit, YesNo{},
              "record every bead that leaves at the collector");
-  v.optional("refinements", c.refinements, refinement_records,
-             "record of each refinement the change of all sums, or also of the Coulomb "
-             "energy, which costs as much as two direct sums");
+  v.optional(
+      "refinements", c.refinements, refinement_records,
+      "record of each refinement the change of all sums, or also of the energy of all "
+      "pairs of charges, which costs as much as two direct sums");
   v.optional("resolving_power", c.resolving_power, positive("s", longest_time),
              "time between samples of the resolving power link_length/l along the jet",
              "none are taken");

@@ -63,8 +63,7 @@ private:
     double theta;
   };
 
-  [[nodiscard]] double next_stop(double end_time) const;
-  double choose_step(double stop);
+  double choose_step();
   double attempt_step(double h);
   std::optional<FoundEvent> first_event(const DenseStep& step);
   [[nodiscard]] double expected_time(const DenseStep& step) const;

@@ -1,0 +1,284 @@
+#include "bench.hpp"
+
+#include "ehdjet/core/error.hpp"
+#include "ehdjet/io/text_output.hpp"
+#include "ehdjet/scene/read_scene.hpp"
+#include "ehdjet/simulation/build.hpp"
+
+#include <omp.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <fmt/format.h>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "interrupt.hpp"
+#include "progress.hpp"
+#include "threads.hpp"
+#include "version.hpp"
+
+namespace ehdjet::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A row of the paper's Table 2 (24 cores, RK4 with steps of 1e-8 s, 0.2 s simulated).
+struct PaperRow {
+  std::string_view name, scene;
+  int beads, processors;
+  double wall, efficiency; // [s], [-]
+};
+constexpr std::array<PaperRow, 4> paper_rows{{{"none", "table2_none", 150, 24, 8787, 0.26},
+                                              {"0.8", "table2_08", 267, 24, 12718, 0.44},
+                                              {"0.4", "table2_04", 509, 24, 24726, 0.62},
+                                              {"0.2", "table2_02", 1123, 24, 75793, 0.80}}};
+
+struct BenchOptions {
+  std::vector<std::string> rows, overrides;
+  std::string scenes = "scenes", output = "table2";
+  std::optional<double> time, rtol, stationary_from;
+  std::optional<std::string> solver, method;
+  std::optional<std::size_t> threads;
+  bool no_serial = false, quiet = false, force = false;
+};
+
+std::vector<std::string> overrides_of(const BenchOptions& options) {
+  std::vector<std::string> all = options.overrides;
+  if (options.time) all.push_back(fmt::format("run.end_time={}", *options.time));
+  if (options.rtol) all.push_back(fmt::format("integrator.rtol={}", *options.rtol));
+  if (options.solver) all.push_back(fmt::format("coulomb.solver=\"{}\"", *options.solver));
+  if (options.method)
+    all.push_back(fmt::format("integrator.method=\"{}\"", *options.method));
+  return all;
+}
+
+/// A mean over time of something that changes only at the ends of steps.
+class TimeMean {
+public:
+  explicit TimeMean(double from)
+      : from_(from) {}
+  void add(double start, double end, double value) {
+    const double time = end - std::max(start, from_);
+    if (time > 0) sum_ += value * time, time_ += time;
+  }
+  [[nodiscard]] double value() const { return sum_ / time_; }
+
+private:
+  double from_, sum_ = 0, time_ = 0;
+};
+
+/// Beads right before each refinement: what the paper's run would have counted at its multiples of
+/// t_ref.
+class BeadsBefore final : public Observer {
+public:
+  explicit BeadsBefore(double from)
+      : from_(from) {}
+  void refined(const RefinementRecord& record) override {
+    if (record.time >= from_) sum_ += static_cast<double>(record.beads_before), ++count_;
+  }
+  [[nodiscard]] double mean() const { return sum_ / static_cast<double>(count_); }
+
+private:
+  double from_, sum_ = 0;
+  std::uint64_t count_ = 0;
+};
+
+struct Measured {
+  double mean_beads = 0, stationary_beads = 0, beads_before = 0;
+  std::uint64_t evaluations = 0;
+  double wall = 0; // [s]
+};
+
+Measured measure(Scene scene, double stationary_from, std::size_t threads, bool quiet) {
+  use_threads(threads);
+  if (scene.config.refinement) scene.config.output.refinements = RefinementRecords::sums;
+  const auto simulation = build_simulation(scene);
+  auto observer = std::make_unique<BeadsBefore>(stationary_from);
+  const BeadsBefore& before = *observer;
+  simulation->add(std::move(observer));
+
+  const double end = scene.config.run.end_time;
+  std::optional<Progress> progress;
+  if (!quiet) progress.emplace(end);
+  TimeMean all(0), stationary(stationary_from);
+  double time = 0;
+  auto beads = static_cast<double>(simulation->jet().links());
+  const InterruptGuard interrupt;
+  simulation->after_each_step([&](const Simulation& s) {
+    all.add(time, s.jet().time, beads), stationary.add(time, s.jet().time, beads);
+    time = s.jet().time, beads = static_cast<double>(s.jet().links());
+    if (progress) progress->show(s);
+    if (const char* signal = InterruptGuard::signal_name())
+      throw RunError(fmt::format("stopped by {}", signal));
+  });
+  simulation->run_until(end);
+  if (progress) progress->finish();
+  return {.mean_beads = all.value(),
+          .stationary_beads = stationary.value(),
+          .beads_before = before.mean(),
+          .evaluations = simulation->statistics().evaluations,
+          .wall = simulation->statistics().wall_time};
+}
+
+struct Row {
+  const PaperRow* paper;
+  double end_time;
+  std::optional<Measured> serial;
+  Measured parallel;
+
+  [[nodiscard]] std::optional<double> efficiency(std::size_t threads) const {
+    if (!serial) return std::nullopt;
+    return serial->wall / (parallel.wall * static_cast<double>(threads));
+  }
+  [[nodiscard]] double microseconds() const { // per evaluation, with all threads
+    return 1e6 * parallel.wall / static_cast<double>(parallel.evaluations);
+  }
+};
+
+std::string number(std::optional<double> value, int digits) {
+  return value && std::isfinite(*value) ? fmt::format("{:.{}f}", *value, digits) : "";
+}
+
+void write_csv(TextOutput& out, const std::vector<Row>& rows, std::size_t threads) {
+  out.print("refinement_length_cm,simulated_s,beads_mean,beads_stationary,beads_before_"
+            "refinement,"
+            "threads,wall_1_s,wall_s,efficiency,evaluations,us_per_evaluation,paper_beads,"
+            "paper_threads,paper_wall_s,paper_efficiency\n");
+  for (const Row& r : rows) {
+    const Measured& m = r.parallel;
+    out.print("{},{},{:.3f},{:.3f},{},{},{},{:.3f},{},{},{:.3f},{},{},{:.0f},{}\n",
+              r.paper->name == "none" ? "" : r.paper->name, r.end_time, m.mean_beads,
+              m.stationary_beads, number(m.beads_before, 3), threads,
+              r.serial ? number(r.serial->wall, 3) : "", m.wall,
+              number(r.efficiency(threads), 4), m.evaluations, r.microseconds(),
+              r.paper->beads, r.paper->processors, r.paper->wall, r.paper->efficiency);
+  }
+  out.close();
+}
+
+std::string markdown(const std::vector<Row>& rows, std::size_t threads) {
+  std::string text = fmt::format("| L~ (cm) | simulated (s) | beads, mean | stationary | "
+                                 "before refining | wall, 1 thread (s) | "
+                                 "wall, {} threads (s) | eta | evaluations | us per "
+                                 "evaluation | paper: beads | wall, 24 "
+                                 "cores (s) | eta |\n"
+                                 "|---|---|---|---|---|---|---|---|---|---|---|---|---|\n",
+                                 threads);
+  double wall = 0, paper = 0;
+  for (const Row& r : rows) {
+    const Measured& m = r.parallel;
+    text += fmt::format(
+        "| {} | {} | {:.1f} | {:.1f} | {} | {} | {:.2f} | {} | {} | {:.1f} | {} | "
+        "{:.0f} | {} |\n",
+        r.paper->name, r.end_time, m.mean_beads, m.stationary_beads,
+        number(m.beads_before, 1), r.serial ? number(r.serial->wall, 2) : "", m.wall,
+        number(r.efficiency(threads), 2), m.evaluations, r.microseconds(), r.paper->beads,
+        r.paper->wall, r.paper->efficiency);
+    wall += m.wall, paper += r.paper->wall;
+  }
+  return text
+         + fmt::format(
+             "\nAll rows: {:.1f} s on {} threads; the paper: {:.0f} s on 24 cores.\n", wall,
+             threads, paper);
+}
+
+std::string provenance() {
+  std::string text;
+  for (const auto& [name, value] : environment())
+    text += fmt::format("{}{}: {}", text.empty() ? "" : ", ", name, value);
+  return text;
+}
+
+void bench_table2(const BenchOptions& options) {
+  std::vector<const PaperRow*> chosen;
+  for (const PaperRow& row : paper_rows)
+    if (options.rows.empty()
+        || std::ranges::find(options.rows, row.name) != options.rows.end())
+      chosen.push_back(&row);
+  std::vector<Scene> scenes; // all are read before anything runs
+  for (const PaperRow* row : chosen)
+    scenes.push_back(
+        read_scene(fs::path(options.scenes) / fmt::format("{}.toml", row->scene),
+                   overrides_of(options)));
+  TextOutput csv(options.output + ".csv", options.force);
+  TextOutput table(options.output + ".md", options.force);
+  const std::size_t threads =
+      options.threads.value_or(static_cast<std::size_t>(omp_get_max_threads()));
+
+  std::vector<Row> rows;
+  for (std::size_t i = 0; i < chosen.size(); ++i) {
+    const double end = scenes[i].config.run.end_time;
+    // The jets of the table are stationary after 35 ms.
+    const double from = options.stationary_from.value_or(std::min(0.035, end / 2));
+    const auto run = [&](std::size_t p) {
+      if (!options.quiet)
+        fmt::print(stderr, "L~ = {}{}, {} thread{}, {} s\n", chosen[i]->name,
+                   chosen[i]->name == "none" ? "" : " cm", p, p == 1 ? "" : "s", end);
+      return measure(scenes[i], from, p, options.quiet);
+    };
+    Row row{.paper = chosen[i], .end_time = end, .serial = {}, .parallel = {}};
+    if (!options.no_serial && threads > 1) row.serial = run(1);
+    row.parallel = run(threads);
+    if (threads == 1) row.serial = row.parallel;
+    rows.push_back(row);
+  }
+  write_csv(csv, rows, threads);
+  const std::string text = markdown(rows, threads);
+  table.print("{}\n{}\n", text, provenance());
+  table.close();
+  fmt::print("{}\nwritten to {}.csv and {}.md\n", text, options.output, options.output);
+}
+
+} // namespace
+
+void add_bench_command(CLI::App& app) {
+  CLI::App* bench = app.add_subcommand("bench", "Measure what runs cost");
+  bench->require_subcommand(1);
+  auto options = std::make_shared<BenchOptions>();
+  CLI::App* command = bench->add_subcommand(
+      "table2", "Cost against the refinement length, next to the paper's Table 2");
+  std::vector<std::string> names;
+  for (const PaperRow& row : paper_rows) names.emplace_back(row.name);
+  command
+      ->add_option("--rows", options->rows,
+                   "Rows, separated by commas: none,0.8,0.4,0.2 (L~ in cm); default: all")
+      ->delimiter(',')
+      ->check(CLI::IsMember(names));
+  command
+      ->add_option("--time", options->time, "Simulated time [s]; default: the scene's, 0.2")
+      ->type_name("T");
+  command->add_option("--rtol", options->rtol, "Tolerance of the integrator");
+  command->add_option("--solver", options->solver, "Coulomb solver");
+  command->add_option("--method", options->method, "Integrator");
+  command
+      ->add_option("--set", options->overrides,
+                   "Override a key of all scenes: table.key=value (repeatable)")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
+  add_threads_option(*command, options->threads);
+  command->add_flag("--no-serial", options->no_serial,
+                    "Do not run on one thread too: no parallel efficiency");
+  command
+      ->add_option(
+          "--stationary-from", options->stationary_from,
+          "Stationary means are taken from this time on [s]; default: 0.035 or half of "
+          "the run")
+      ->type_name("T");
+  command->add_option("--scenes", options->scenes, "Folder with table2_none.toml, ...")
+      ->capture_default_str();
+  command->add_option("-o,--output", options->output, "Writes OUTPUT.csv and OUTPUT.md")
+      ->capture_default_str();
+  command->add_flag("--quiet", options->quiet, "No progress");
+  command->add_flag("--force", options->force, "Overwrite existing output");
+  command->callback([options] { bench_table2(*options); });
+}
+
+} // namespace ehdjet::cli

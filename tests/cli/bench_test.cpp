@@ -1,0 +1,54 @@
+#include <gtest/gtest.h>
+
+#include <gmock/gmock.h>
+#include <string>
+
+#include "cli/command.hpp"
+
+namespace {
+
+using namespace ehdjet::test;
+using testing::AllOf;
+using testing::HasSubstr;
+
+const std::string table2 = "bench table2 --scenes " EHDJET_SCENES " ";
+
+TEST(BenchTable2, writes_its_rows_next_to_the_paper_s) {
+  const Folder folder;
+  const Outcome o =
+      command(folder, table2 + "--rows none,0.8 --time 3e-3 --threads 1 --rtol 1e-4 -o t");
+  EXPECT_EQ(o.exit_code, 0) << o.err;
+  EXPECT_THAT(o.out, AllOf(HasSubstr("8787"), HasSubstr("12718"), HasSubstr("t.csv")));
+  const std::string csv = text_of(folder / "t.csv");
+  EXPECT_THAT(csv, AllOf(HasSubstr("refinement_length_cm,simulated_s,beads_mean"),
+                         HasSubstr("\n0.8,0.003,"), HasSubstr(",150,24,8787,0.26\n")));
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 3);
+  EXPECT_THAT(text_of(folder / "t.md"), HasSubstr("| 0.8 |"));
+}
+
+TEST(BenchTable2, refuses_what_it_does_not_know_and_overwrites_nothing) {
+  const Folder folder;
+  EXPECT_EQ(command(folder, table2 + "--rows 0.3").exit_code, 2);
+  EXPECT_EQ(command(folder, table2 + "--solver magic").exit_code, 2);
+  EXPECT_EQ(command(folder, table2 + "--rtol -1").exit_code, 2);
+  folder.file("table2.csv", "precious");
+  const Outcome o = command(folder, table2 + "--rows none --time 1e-4");
+  EXPECT_EQ(o.exit_code, 2);
+  EXPECT_THAT(o.err, HasSubstr("table2.csv"));
+  EXPECT_EQ(text_of(folder / "table2.csv"), "precious");
+}
+
+TEST(Export, has_refinements_and_resolving_power_of_a_refined_run) {
+  const Folder folder;
+  const Outcome o = command(folder, "run " EHDJET_SCENES
+                                    "/table2_04.toml --quiet --set run.end_time=5e-3 --set "
+                                    "integrator.rtol=1e-4 -o t.h5");
+  ASSERT_EQ(o.exit_code, 0) << o.err;
+  EXPECT_THAT(command(folder, "export t.h5 --refinements").out,
+              HasSubstr("time_s,kept,beads_before,beads_after"));
+  EXPECT_THAT(command(folder, "export t.h5 --resolving-power --from 4e-3").out,
+              HasSubstr("lambda,mean_r,min_r\n0,"));
+  EXPECT_EQ(command(folder, "export t.h5 --observables --from 4e-3").exit_code, 2);
+}
+
+} // namespace
