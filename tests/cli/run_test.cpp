@@ -100,7 +100,7 @@ TEST(Run, stops_cleanly_on_a_signal) {
         command(folder,
                 "run " + std::string(EHDJET_SCENES "/pvp.toml")
                     + " -o jet.h5 --set run.end_time=100 --set output.observables=1e-6",
-                "timeout --preserve-status -s " + signal + " 1");
+                "timeout --preserve-status -s " + signal + " 2");
     EXPECT_EQ(o.exit_code, 1) << o.err;
     EXPECT_THAT(o.err,
                 AllOf(HasSubstr("SIG" + signal), HasSubstr("t = "), HasSubstr("jet.h5")));
