@@ -68,7 +68,7 @@ public:
       , rtol_(rtol)
       , tuned_(tuned)
       , jet_(initial_jet(scene))
-      , dynamics_(build_dynamics(scene.config)) {
+      , dynamics_(build_dynamics(scene)) {
     const NozzleConfig& n = *config_.nozzle;
     const double l = n.link_length, v = config_.integrator.velocity_scale;
     scale_ = {l, l, l, v, v, v, 0.1 * config_.viscoelasticity->elastic_modulus};

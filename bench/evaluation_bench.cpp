@@ -27,7 +27,7 @@ const JetState& whipping_jet() {
 std::unique_ptr<JetDynamics> dynamics(bool with_coulomb) {
   Scene scene = read_scene(EHDJET_SCENES "/pvp.toml");
   if (!with_coulomb) scene.config.coulomb.reset();
-  auto d = build_dynamics(scene.config);
+  auto d = build_dynamics(scene);
   d->bind(whipping_jet());
   return d;
 }

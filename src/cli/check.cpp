@@ -10,11 +10,13 @@
 #include <string>
 #include <vector>
 
+#include "threads.hpp"
+
 namespace ehdjet::cli {
 namespace {
 
 struct CheckOptions {
-  std::string scene;
+  std::string scene, calibration;
   std::vector<std::string> overrides;
   bool keys = false;
 };
@@ -24,7 +26,8 @@ void check(const CheckOptions& options) {
     fmt::print("{}", key_reference());
     return;
   }
-  const Scene scene = read_scene(options.scene, options.overrides);
+  const Scene scene =
+      read_scene(options.scene, with_calibration(options.overrides, options.calibration));
   build_simulation(scene); // finds what only the composition can find
   fmt::print("{}", scene_report(scene));
 }
@@ -41,6 +44,7 @@ void add_check_command(CLI::App& app) {
                    "Override a key: table.key=value (repeatable)")
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
+  add_calibration_option(*command, options->calibration);
   auto* keys = command->add_flag("--keys", options->keys,
                                  "Print the reference of all tables and keys (Markdown)");
   keys->excludes(scene);

@@ -5,6 +5,7 @@
 #include "ehdjet/coulomb/error_estimate.hpp"
 #include "ehdjet/coulomb/make_solver.hpp"
 #include "ehdjet/io/text_output.hpp"
+#include "ehdjet/scene/calibration_file.hpp"
 
 #include <omp.h>
 
@@ -26,7 +27,7 @@ namespace ehdjet::cli {
 namespace {
 
 struct ForcesOptions {
-  std::string beads, output, solver = "direct";
+  std::string beads, output, calibration, solver = "direct";
   std::optional<double> tolerance;
   std::optional<std::size_t> threads;
   int repeat = 1;
@@ -64,11 +65,11 @@ double median(std::vector<double> v) {
 
 void forces(const ForcesOptions& options) {
   use_threads(options.threads);
-  const auto solver = make_coulomb_solver(options.solver);
-  if (options.tolerance && *options.tolerance < solver->accuracy().tolerance)
-    throw InputError(
-        fmt::format("--tolerance {}: the solver \"{}\" promises no better than {}",
-                    *options.tolerance, solver->name(), solver->accuracy().tolerance));
+  SolverOptions solver_options{.solver = options.solver};
+  if (options.tolerance) solver_options.tolerance = *options.tolerance;
+  if (!options.calibration.empty())
+    solver_options.costs = read_calibration(options.calibration);
+  const auto solver = make_coulomb_solver(solver_options);
   const Charges c = read_charges(options.beads);
   std::optional<TextOutput> output; // before the work: an existing file is refused now
   if (!options.output.empty()) output.emplace(options.output, options.force);
@@ -90,6 +91,7 @@ void forces(const ForcesOptions& options) {
 
   CoulombErrorSample error; // the direct sum is what errors are measured against
   if (solver->name() != "direct") error = sampled_error(c.positions(), c.q, force);
+  if (solver->name() == "auto") fmt::print(stderr, "{}\n", solver->description());
   if (output) {
     output->print("fx,fy,fz\n");
     for (std::size_t i = 0; i < n; ++i)
@@ -121,8 +123,9 @@ void add_forces_command(CLI::App& app) {
       ->capture_default_str();
   command
       ->add_option("--tolerance", options->tolerance,
-                   "Relative L2 error allowed; refused if the solver does not promise it")
+                   "Relative L2 error of the net force that is allowed")
       ->check(CLI::Range(0.0, 1.0));
+  add_calibration_option(*command, options->calibration);
   add_threads_option(*command, options->threads);
   command
       ->add_option("--repeat", options->repeat,

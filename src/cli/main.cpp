@@ -9,6 +9,7 @@
 #include <new>
 
 #include "bench.hpp"
+#include "calibrate.hpp"
 #include "check.hpp"
 #include "export.hpp"
 #include "forces.hpp"
@@ -30,6 +31,7 @@ int main(int argc, char** argv) {
     ehdjet::cli::add_export_command(app);
     ehdjet::cli::add_plot_command(app);
     ehdjet::cli::add_bench_command(app);
+    ehdjet::cli::add_calibrate_command(app);
     app.parse(argc, argv); // runs the subcommand
   } catch (const CLI::ParseError& e) {
     return app.exit(e) == 0 ? 0 : 2;

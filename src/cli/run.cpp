@@ -25,7 +25,7 @@ namespace ehdjet::cli {
 namespace {
 
 struct RunOptions {
-  std::string scene, output;
+  std::string scene, output, calibration;
   std::vector<std::string> overrides;
   std::optional<std::size_t> threads;
   bool quiet = false, force = false;
@@ -38,7 +38,8 @@ struct Interrupted : RunError {
 
 void add_observers(Simulation& simulation, RunFile& file, const SceneConfig& config) {
   if (config.output.observables)
-    simulation.add(file.observables(*config.output.observables));
+    simulation.add(file.observables(*config.output.observables,
+                                    config.coulomb && config.coulomb->check_every));
   if (config.output.frames)
     simulation.add(file.frames(*config.output.frames, simulation.dynamics().has_stress()));
   if (config.output.deposit) simulation.add(file.deposit());
@@ -73,6 +74,9 @@ std::string summary(const Simulation& s, const Scene& scene,
                         cost.insertions, cost.releases, cost.landings);
   if (cost.refinements)
     text += fmt::format("  refinements   {} that changed the mesh\n", *cost.refinements);
+  for (const auto& term : s.dynamics().terms())
+    if (const std::string method = term->method(); !method.empty() && method != "direct")
+      text += fmt::format("  Coulomb       {}\n", method);
   text += fmt::format("  cost          {} evaluations, {} steps, {} rejected, {:.2f} s\n",
                       cost.evaluations, cost.steps, cost.rejected, cost.wall_time);
   if (s.dynamics().coincident_pairs() > 0)
@@ -82,7 +86,8 @@ std::string summary(const Simulation& s, const Scene& scene,
 }
 
 void run(const RunOptions& options) {
-  const Scene scene = read_scene(options.scene, options.overrides);
+  const Scene scene =
+      read_scene(options.scene, with_calibration(options.overrides, options.calibration));
   use_threads(options.threads ? options.threads : scene.config.run.threads);
   const auto simulation = build_simulation(scene);
 
@@ -115,6 +120,9 @@ void run(const RunOptions& options) {
     if (progress) progress->finish();
     RunStatistics statistics = simulation->statistics();
     statistics.coincident_pairs = simulation->dynamics().coincident_pairs();
+    for (const auto& term : simulation->dynamics().terms())
+      if (const std::string method = term->method(); !method.empty())
+        file.note_coulomb(method);
     file.finish(status, message, statistics, simulation->ledger());
   };
   const auto end_badly = [&](const char* status, const Error& e) {
@@ -152,6 +160,7 @@ void add_run_command(CLI::App& app) {
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
   add_threads_option(*command, options->threads);
+  add_calibration_option(*command, options->calibration);
   command->add_flag("--quiet", options->quiet, "Print nothing but errors");
   command->add_flag("--force", options->force, "Overwrite the run file if it exists");
   command->callback([options] { run(*options); });

@@ -3,21 +3,85 @@
 #include "ehdjet/core/error.hpp"
 #include "ehdjet/coulomb/direct_sum.hpp"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
+#include <fmt/format.h>
 #include <iterator>
 #include <string>
+
+#include "auto_solver.hpp"
+#include "cluster_solver.hpp"
 
 namespace ehdjet {
 namespace {
 
+using detail::ClusterParameters;
+using detail::Kernels;
+
+Kernels best_kernels() {
+#if defined(__x86_64__)
+  if (best_simd_level() == SimdLevel::avx512)
+    return {detail::avx512_pair_kernel(), detail::avx512_expansion_kernel()};
+  if (best_simd_level() == SimdLevel::avx2)
+    return {detail::avx2_pair_kernel(), detail::avx2_expansion_kernel()};
+#endif
+  return {detail::portable_pair_kernel(), detail::portable_expansion_kernel()};
+}
+
+// Tighter tolerances are below what expansions and the direct sum itself can keep: forces on a
+// smooth curve are small residues.
+constexpr double tightest = 1e-13, loosest = 0.1;
+
+void check(const SolverOptions& o) {
+  const auto refuse = [&](const std::string& what) {
+    throw InputError(fmt::format("Coulomb solver \"{}\": {}", o.solver, what));
+  };
+  if (!(o.tolerance >= tightest && o.tolerance <= loosest))
+    refuse(fmt::format("tolerance {:g}: must be from {:g} to {:g}", o.tolerance, tightest,
+                       loosest));
+  if (o.order && (*o.order < 2 || *o.order > detail::highest_order))
+    refuse(fmt::format("order {}: must be from 2 to {}", *o.order, detail::highest_order));
+  if (o.opening && !(*o.opening > 0 && *o.opening < 1))
+    refuse(fmt::format("opening {}: must be greater than 0 and less than 1", *o.opening));
+  if (o.leaf && (*o.leaf == 0 || *o.leaf % detail::padding != 0))
+    refuse(fmt::format("leaf {}: must be a multiple of {}", *o.leaf, detail::padding));
+}
+
+/// Order and leaf that cost least for a tolerance (bench/coulomb_bench).
+ClusterParameters parameters(const SolverOptions& o, std::size_t coarse_leaf,
+                             std::size_t fine_leaf) {
+  check(o);
+  const double digits = -std::log10(o.tolerance);
+  const int order = static_cast<int>(std::lround(1.35 * digits + 0.3));
+  return {.tolerance = o.tolerance,
+          .norm = o.norm,
+          .order = o.order.value_or(std::clamp(order, 3, detail::highest_order)),
+          .leaf = o.leaf.value_or(digits < 5 ? coarse_leaf : fine_leaf),
+          .opening = o.opening.value_or(ClusterParameters{}.opening)};
+}
+
 struct KnownSolver {
   SolverDescription about;
-  std::unique_ptr<CoulombSolver> (*make)();
+  std::unique_ptr<CoulombSolver> (*make)(const SolverOptions&);
 };
 
 constexpr KnownSolver known[] = {
     {{"direct", "every pair, O(n^2): exact to round-off"},
-     [] { return make_direct_sum(); }},
+     [](const SolverOptions&) { return make_direct_sum(); }},
+    {{"treecode", "Barnes-Hut with multipoles, O(n log n), within a tolerance"},
+     [](const SolverOptions& o) {
+       return detail::make_treecode(best_kernels(), parameters(o, 64, 64));
+     }},
+    {{"fmm", "fast multipole method, O(n), within a tolerance"},
+     [](const SolverOptions& o) {
+       return detail::make_fast_multipole(best_kernels(), parameters(o, 32, 64));
+     }},
+    {{"auto", "the cheapest of these for the present number of beads"},
+     [](const SolverOptions& o) {
+       check(o);
+       return detail::make_auto_solver(o);
+     }},
 };
 
 } // namespace
@@ -31,14 +95,23 @@ std::span<const SolverDescription> coulomb_solvers() {
   return descriptions;
 }
 
-std::unique_ptr<CoulombSolver> make_coulomb_solver(std::string_view name) {
+std::unique_ptr<CoulombSolver> make_coulomb_solver(const SolverOptions& options) {
   std::string names;
   for (const KnownSolver& solver : known) {
-    if (solver.about.name == name) return solver.make();
+    if (solver.about.name == options.solver) {
+      auto made = solver.make(options);
+      return options.check_every
+                 ? detail::make_checked_solver(std::move(made), *options.check_every)
+                 : std::move(made);
+    }
     names.append(names.empty() ? "" : ", ").append(solver.about.name);
   }
-  throw InputError("unknown Coulomb solver '" + std::string(name) + "' (known: " + names
+  throw InputError("unknown Coulomb solver '" + options.solver + "' (known: " + names
                    + ")");
+}
+
+std::unique_ptr<CoulombSolver> make_coulomb_solver(std::string_view name) {
+  return make_coulomb_solver(SolverOptions{.solver = std::string(name)});
 }
 
 } // namespace ehdjet

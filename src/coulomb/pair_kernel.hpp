@@ -25,10 +25,10 @@ struct FieldColumns {
   double *x, *y, *z;
 };
 
-/// Tiles first, first + stride, ... of consecutive targets, against the sources in
+/// Tiles first, first + stride, ... below last of consecutive targets, against the sources in
 /// [begin, end): multiples of `padding`. Only pairs i < j are visited.
 struct TileRows {
-  std::size_t first, stride, begin, end;
+  std::size_t first, last, stride, begin, end;
 };
 
 /// Adds the field  sum_j q_j (r_i - r_j)/|r_i - r_j|^3  of every visited pair to both of its
@@ -38,6 +38,8 @@ using AddFields = void (*)(const ChargeColumns&, FieldColumns, TileRows,
 
 struct PairKernel {
   AddFields add_fields;
+  /// The field of the sources on the targets only; the two ranges are disjoint, in any order.
+  AddFields add_fields_one_way;
   std::size_t targets; ///< per tile
 };
 

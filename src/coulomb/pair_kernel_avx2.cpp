@@ -1,5 +1,6 @@
 #include <immintrin.h>
 
+#include "expansions.hpp"
 #include "pair_tiles.hpp"
 
 namespace ehdjet::detail {
@@ -25,7 +26,11 @@ struct Avx2 {
 } // namespace
 
 PairKernel avx2_pair_kernel() {
-  return {add_fields<Avx2>, Avx2::targets};
+  return pair_kernel<Avx2>();
+}
+
+ExpansionKernel avx2_expansion_kernel() {
+  return expansion_kernel<Avx2>();
 }
 
 } // namespace ehdjet::detail

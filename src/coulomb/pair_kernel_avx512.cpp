@@ -1,5 +1,6 @@
 #include <immintrin.h>
 
+#include "expansions.hpp"
 #include "pair_tiles.hpp"
 
 namespace ehdjet::detail {
@@ -25,7 +26,11 @@ struct Avx512 {
 } // namespace
 
 PairKernel avx512_pair_kernel() {
-  return {add_fields<Avx512>, Avx512::targets};
+  return pair_kernel<Avx512>();
+}
+
+ExpansionKernel avx512_expansion_kernel() {
+  return expansion_kernel<Avx512>();
 }
 
 } // namespace ehdjet::detail

@@ -1,3 +1,4 @@
+#include "expansions.hpp"
 #include "pair_tiles.hpp"
 
 namespace ehdjet::detail {
@@ -19,7 +20,11 @@ struct Portable {
 } // namespace
 
 PairKernel portable_pair_kernel() {
-  return {add_fields<Portable>, Portable::targets};
+  return pair_kernel<Portable>();
+}
+
+ExpansionKernel portable_expansion_kernel() {
+  return expansion_kernel<Portable>();
 }
 
 } // namespace ehdjet::detail

@@ -135,8 +135,8 @@ struct Separations {
 };
 
 /// One tile: `Simd::targets` beads from i on, against `vectors` vectors of sources from j on.
-/// `diagonal`: the two ranges overlap. Returns whether a close pair may have been met.
-template <class Simd, int vectors, bool diagonal>
+/// `diagonal`: the two ranges overlap. `mutual`: sources feel the targets, too. Returns whether a close pair may have been met.
+template <class Simd, int vectors, bool diagonal, bool mutual = true>
 EHDJET_INLINE bool add_tile(const ChargeColumns& c, FieldColumns g, std::size_t i,
                             std::size_t j, Targets<Simd>& target) {
   using Vector = typename Simd::Vector;
@@ -156,15 +156,21 @@ EHDJET_INLINE bool add_tile(const ChargeColumns& c, FieldColumns g, std::size_t 
   for (int v = 0; v < vectors; ++v) {
     const std::size_t source = j + std::size_t(v) * Simd::lanes;
     const Vector q = load<Simd>(c.q + source);
+#pragma GCC unroll 8
+    for (int t = 0; t < Simd::targets; ++t) {
+      const int k = v * Simd::targets + t;
+      const Vector to_target = w[k] * q;
+      target.gx[t] += to_target * d.dx[k];
+      target.gy[t] += to_target * d.dy[k];
+      target.gz[t] += to_target * d.dz[k];
+    }
+    if constexpr (!mutual) continue;
     Vector gx = load<Simd>(g.x + source), gy = load<Simd>(g.y + source),
            gz = load<Simd>(g.z + source);
 #pragma GCC unroll 8
     for (int t = 0; t < Simd::targets; ++t) {
       const int k = v * Simd::targets + t;
-      const Vector to_target = w[k] * q, to_source = w[k] * target.q[t];
-      target.gx[t] += to_target * d.dx[k];
-      target.gy[t] += to_target * d.dy[k];
-      target.gz[t] += to_target * d.dz[k];
+      const Vector to_source = w[k] * target.q[t];
       gx -= to_source * d.dx[k];
       gy -= to_source * d.dy[k];
       gz -= to_source * d.dz[k];
@@ -183,7 +189,8 @@ void add_fields(const ChargeColumns& charges, FieldColumns g, TileRows rows,
   constexpr std::size_t lanes = Simd::lanes, targets = Simd::targets;
   constexpr std::size_t wide = lanes * Simd::vectors;
   const ChargeColumns c = charges; // a copy, so that stores to g cannot change the pointers
-  for (std::size_t row = rows.first; row * targets < rows.end; row += rows.stride) {
+  for (std::size_t row = rows.first; row < rows.last && row * targets < rows.end;
+       row += rows.stride) {
     const std::size_t i = row * targets;
     Targets<Simd> target(c, i);
     bool met_close = false;
@@ -199,6 +206,32 @@ void add_fields(const ChargeColumns& charges, FieldColumns g, TileRows rows,
     target.add_to(g, i);
     if (met_close) close[row] = 1;
   }
+}
+
+template <class Simd>
+void add_fields_one_way(const ChargeColumns& charges, FieldColumns g, TileRows rows,
+                        unsigned char* close) {
+  constexpr std::size_t lanes = Simd::lanes, targets = Simd::targets;
+  constexpr std::size_t wide = lanes * Simd::vectors;
+  const ChargeColumns c = charges;
+  for (std::size_t row = rows.first; row < rows.last; row += rows.stride) {
+    const std::size_t i = row * targets;
+    Targets<Simd> target(c, i);
+    bool met_close = false;
+    std::size_t j = rows.begin;
+    for (; j + wide <= rows.end; j += wide)
+      met_close |= add_tile<Simd, Simd::vectors, false, false>(c, g, i, j, target);
+    if constexpr (Simd::vectors > 1)
+      for (; j < rows.end; j += lanes)
+        met_close |= add_tile<Simd, 1, false, false>(c, g, i, j, target);
+    target.add_to(g, i);
+    if (met_close) close[row] = 1;
+  }
+}
+
+template <class Simd>
+PairKernel pair_kernel() {
+  return {add_fields<Simd>, add_fields_one_way<Simd>, Simd::targets};
 }
 
 #undef EHDJET_INLINE

@@ -119,6 +119,12 @@ std::uint64_t JetDynamics::coincident_pairs() const {
   return pairs;
 }
 
+std::optional<double> JetDynamics::coulomb_error() const {
+  for (const auto& term : terms_)
+    if (const auto error = term->measured_error()) return error;
+  return std::nullopt;
+}
+
 std::string JetDynamics::diagnosis(double t, std::span<const double> y, std::size_t bead) {
   const std::size_t n = mass_.size();
   for (std::size_t i = 0; i < y.size(); ++i)

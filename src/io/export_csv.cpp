@@ -19,10 +19,14 @@ void export_observables(const RunReader& run, TextOutput& output) {
       "steps",       "rejected"};
   std::vector<std::vector<double>> values;
   for (const char* column : columns) values.push_back(run.observable(column));
+  const auto present = run.columns();
+  const bool with_error = std::ranges::find(present, "coulomb_error") != present.end();
+  if (with_error) values.push_back(run.observable("coulomb_error"));
   output.print(
       "time_s,beads,tip_x_m,tip_yz_m,path_length_m,nozzle_speed_m_s,impact_speed_m_s,"
       "collector_radius_m,current_in_a,current_out_a,aperture_deg,evaluations,steps,"
-      "rejected\n");
+      "rejected{}\n",
+      with_error ? ",coulomb_error" : "");
   for (std::size_t row = 0; row < values.front().size(); ++row) {
     for (std::size_t c = 0; c < values.size(); ++c) {
       output.print("{}{:.17g}", c == 0 ? "" : ",", values[c][row]);

@@ -36,7 +36,7 @@ double aperture(const Tip& tip) { // full opening angle of the cone the tip runs
 
 class Observables final : public Observer {
 public:
-  Observables(RunWriter& writer, double interval, hid_t group)
+  Observables(RunWriter& writer, double interval, bool with_coulomb_error, hid_t group)
       : writer_(writer)
       , schedule_(interval)
       , time_(real(group, {"time", "s", "simulated time"}))
@@ -56,7 +56,12 @@ public:
       , aperture_(real(group, {"aperture", "deg", "2 atan(tip_yz / tip_x)"}))
       , evaluations_(count(group, {"evaluations", "1", "of the right-hand side, so far"}))
       , steps_(count(group, {"steps", "1", "accepted, so far"}))
-      , rejected_(count(group, {"rejected", "1", "rejected steps, so far"})) {}
+      , rejected_(count(group, {"rejected", "1", "rejected steps, so far"}))
+      , coulomb_error_(
+            with_coulomb_error
+                ? &real(group, {"coulomb_error", "1",
+                                "relative L2 error of the Coulomb force at its last check"})
+                : nullptr) {}
 
   [[nodiscard]] double next_time() const override { return schedule_.next(); }
 
@@ -92,6 +97,8 @@ private:
     evaluations_.append(snapshot.statistics.evaluations);
     steps_.append(snapshot.statistics.steps);
     rejected_.append(snapshot.statistics.rejected);
+    if (coulomb_error_ != nullptr)
+      coulomb_error_->append(snapshot.statistics.coulomb_error.value_or(0));
     previous_time_ = snapshot.time;
     previous_in_ = ledger.inserted_charge, previous_out_ = ledger.removed_charge;
   }
@@ -101,17 +108,19 @@ private:
   hdf5::Column &time_, &beads_, &tip_x_, &tip_yz_, &path_length_, &nozzle_speed_,
       &impact_speed_, &collector_radius_, &current_in_, &current_out_, &aperture_,
       &evaluations_, &steps_, &rejected_;
+  hdf5::Column* coulomb_error_; // absent without checks
   double previous_time_ = std::numeric_limits<double>::infinity();
   double previous_in_ = 0, previous_out_ = 0; // [C]
 };
 
 } // namespace
 
-std::unique_ptr<Observer> make_observables(RunWriter& writer, double interval) {
+std::unique_ptr<Observer> make_observables(RunWriter& writer, double interval,
+                                           bool with_coulomb_error) {
   std::unique_ptr<Observer> observer;
   writer.write([&] {
-    observer =
-        std::make_unique<Observables>(writer, interval, writer.create_group("observables"));
+    observer = std::make_unique<Observables>(writer, interval, with_coulomb_error,
+                                             writer.create_group("observables"));
   });
   writer.flush();
   return observer;

@@ -12,9 +12,9 @@ RunFile::RunFile(const std::filesystem::path& path, bool overwrite,
 
 RunFile::~RunFile() = default;
 
-std::unique_ptr<Observer> RunFile::observables(double interval) {
+std::unique_ptr<Observer> RunFile::observables(double interval, bool with_coulomb_error) {
   EHDJET_EXPECTS(interval > 0);
-  return make_observables(*writer_, interval);
+  return make_observables(*writer_, interval, with_coulomb_error);
 }
 
 std::unique_ptr<Observer> RunFile::frames(double interval, bool with_stress) {
@@ -33,6 +33,10 @@ std::unique_ptr<Observer> RunFile::refinements(bool with_coulomb_energy) {
 std::unique_ptr<Observer> RunFile::resolving_power(double interval, double link_length) {
   EHDJET_EXPECTS(interval > 0 && link_length > 0);
   return make_resolving_power(*writer_, interval, link_length);
+}
+
+void RunFile::note_coulomb(const std::string& method) {
+  writer_->note("coulomb", method);
 }
 
 void RunFile::flush() {

@@ -189,6 +189,8 @@ void RunWriter::finish(const std::string& status, const std::string& message,
   EHDJET_EXPECTS(file_ >= 0); // once
   const auto last_words = [&] {
     write_status(file_, status, message);
+    for (const auto& [name, value] : notes_)
+      hdf5::write_attribute(file_, name.c_str(), value);
     write_statistics(file_, statistics);
     write_ledger(file_, ledger);
   };

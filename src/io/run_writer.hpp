@@ -8,6 +8,8 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "column.hpp"
 #include "hdf5.hpp"
@@ -36,6 +38,10 @@ public:
     guard(append);
     if (std::chrono::steady_clock::now() - flushed_ >= flush_interval_) flush();
   }
+  /// A root attribute that is written with the last words.
+  void note(std::string name, std::string value) {
+    notes_.emplace_back(std::move(name), std::move(value));
+  }
   void flush();
   void finish(const std::string& status, const std::string& message,
               const RunStatistics& statistics, const Ledger& ledger);
@@ -57,6 +63,7 @@ private:
   void create(const Provenance& provenance);
   void close();
 
+  std::vector<std::pair<std::string, std::string>> notes_;
   std::filesystem::path path_;
   std::chrono::duration<double> flush_interval_;
   std::chrono::steady_clock::time_point flushed_ = std::chrono::steady_clock::now();
@@ -65,7 +72,8 @@ private:
 };
 
 // The observers of a run file; each creates its part of the file.
-std::unique_ptr<Observer> make_observables(RunWriter& writer, double interval);
+std::unique_ptr<Observer> make_observables(RunWriter& writer, double interval,
+                                           bool with_coulomb_error);
 std::unique_ptr<Observer> make_frames(RunWriter& writer, double interval, bool with_stress);
 std::unique_ptr<Observer> make_deposit(RunWriter& writer);
 std::unique_ptr<Observer> make_refinements(RunWriter& writer, bool with_coulomb_energy);

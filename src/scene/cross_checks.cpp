@@ -112,6 +112,33 @@ void check_adaptive_keys(const IntegratorConfig& i, const SceneText& text) {
                     name, *value, i.min_step));
 }
 
+void check_coulomb(const SceneConfig& c, const SceneText& text) {
+  if (!c.coulomb) return;
+  const CoulombConfig& s = *c.coulomb;
+  const auto refuse = [&](const char* key, const std::string& why) {
+    text.fail(fmt::format("coulomb.{}", key), why);
+  };
+  const bool expands = s.solver != "direct";
+  const auto needs_expansions = [&](const char* key, bool given) {
+    if (given && !expands)
+      refuse(key, fmt::format(
+                      "coulomb.{} and coulomb.solver = \"direct\": the direct sum has no "
+                      "expansions. Remove one",
+                      key));
+  };
+  needs_expansions("order", s.order.has_value());
+  needs_expansions("opening", s.opening.has_value());
+  needs_expansions("leaf", s.leaf.has_value());
+  if (s.leaf && *s.leaf % 8 != 0)
+    refuse("leaf", fmt::format("coulomb.leaf = {}: must be a multiple of 8", *s.leaf));
+  if (s.calibration && s.solver != "auto")
+    refuse("calibration",
+           fmt::format(
+               "coulomb.calibration and coulomb.solver = \"{}\": only \"auto\" chooses "
+               "by costs. Remove one",
+               s.solver));
+}
+
 void check_refinement(const SceneConfig& c, const SceneText& text) {
   if (!c.refinement) return;
   const RefinementConfig& r = *c.refinement;
@@ -215,6 +242,7 @@ void settle(SceneConfig& config, const SceneText& text) {
         fmt::format("integrator.stress_scale = {} Pa needs [viscoelasticity]: without it "
                     "there is no stress",
                     *config.integrator.stress_scale));
+  check_coulomb(config, text);
   check_refinement(config, text);
   check_varicosity(config, text);
   check_output(config, text);

@@ -1,6 +1,7 @@
 #include "ehdjet/scene/read_scene.hpp"
 
 #include "ehdjet/core/error.hpp"
+#include "ehdjet/scene/calibration_file.hpp"
 #include "ehdjet/scene/chain_file.hpp"
 #include "ehdjet/scene/schema.hpp"
 
@@ -214,6 +215,8 @@ Scene read_scene_text(const std::string& text, const std::string& name,
   Reader reader(source);
   describe(reader, scene.config);
   settle(scene.config, source);
+  if (scene.config.coulomb && scene.config.coulomb->calibration)
+    scene.costs = read_calibration(folder / *scene.config.coulomb->calibration);
   if (scene.config.chain) {
     const ChainConfig& chain = *scene.config.chain;
     scene.chain = read_chain(folder / chain.file, chain.time);

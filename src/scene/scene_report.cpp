@@ -66,13 +66,27 @@ std::string stability_text(const Scene& scene) {
   return text;
 }
 
-std::string forces_text(const SceneConfig& c) {
+std::string coulomb_text(const Scene& scene) {
+  const CoulombConfig& c = *scene.config.coulomb;
+  if (c.solver == "direct") return "direct";
+  std::string text = fmt::format("{}, tolerance {:g}", c.solver, c.tolerance);
+  if (c.solver != "auto") return text;
+  const CostModel& costs = scene.costs ? *scene.costs : CostModel::shipped();
+  const std::size_t n = costs.crossover(c.tolerance);
+  return text
+         + fmt::format(": direct below {} beads, {} from there on, by the {} costs", n,
+                       costs.cheapest(n, c.tolerance),
+                       scene.costs ? "measured" : "shipped");
+}
+
+std::string forces_text(const Scene& scene) {
+  const SceneConfig& c = scene.config;
   std::vector<std::string> forces;
   if (c.field)
     forces.push_back(fmt::format("external field {:.6g} V/m", field_strength(c)));
   if (c.gravity)
     forces.push_back(fmt::format("gravity {:.6g} m/s^2", c.gravity->acceleration));
-  if (c.coulomb) forces.push_back(fmt::format("Coulomb ({})", c.coulomb->solver));
+  if (c.coulomb) forces.push_back(fmt::format("Coulomb ({})", coulomb_text(scene)));
   if (c.viscoelasticity)
     forces.emplace_back(c.viscoelasticity->elastic_modulus > 0
                                 && c.viscoelasticity->viscosity > 0
@@ -144,7 +158,7 @@ std::string run_text(const Scene& scene) {
   const SceneConfig& c = scene.config;
   const auto& i = c.integrator;
   std::string text = "\nWhat will be simulated\n";
-  text += fmt::format("  jet: {}\n  forces: {}\n", jet_text(scene), forces_text(c));
+  text += fmt::format("  jet: {}\n  forces: {}\n", jet_text(scene), forces_text(scene));
   text += c.collector
               ? fmt::format("  collector: beads land at x = {} m and leave the chain\n",
                             c.collector->distance)

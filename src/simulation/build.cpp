@@ -166,7 +166,22 @@ JetState initial_jet(const Scene& scene) {
   return chain_jet(scene.chain, with_stress);
 }
 
-std::unique_ptr<JetDynamics> build_dynamics(const SceneConfig& c) {
+SolverOptions solver_options(const CoulombConfig& c,
+                             const std::optional<CostModel>& costs) {
+  SolverOptions options{.solver = c.solver,
+                        .tolerance = c.tolerance,
+                        .norm = c.tolerance_norm,
+                        .order = {},
+                        .opening = c.opening,
+                        .leaf = c.leaf,
+                        .costs = costs,
+                        .check_every = c.check_every};
+  if (c.order) options.order = static_cast<int>(*c.order);
+  return options;
+}
+
+std::unique_ptr<JetDynamics> build_dynamics(const Scene& scene) {
+  const SceneConfig& c = scene.config;
   auto dynamics = std::make_unique<JetDynamics>();
   if (c.nozzle)
     dynamics->set_nozzle(nozzle_of(*c.nozzle), {.link_length = c.nozzle->link_length});
@@ -177,7 +192,8 @@ std::unique_ptr<JetDynamics> build_dynamics(const SceneConfig& c) {
   if (c.field) dynamics->add(std::make_unique<ExternalField>(field_strength(c)));
   if (c.gravity) dynamics->add(std::make_unique<Gravity>(c.gravity->acceleration));
   if (c.coulomb)
-    dynamics->add(std::make_unique<CoulombForce>(make_coulomb_solver(c.coulomb->solver)));
+    dynamics->add(std::make_unique<CoulombForce>(
+        make_coulomb_solver(solver_options(*c.coulomb, scene.costs))));
   if (c.surface_tension && c.surface_tension->form == SurfaceTensionForm::paper)
     dynamics->add(std::make_unique<BendingSurfaceTension>(c.surface_tension->coefficient));
   if (c.surface_tension && c.surface_tension->form == SurfaceTensionForm::line)
@@ -196,7 +212,7 @@ std::unique_ptr<Simulation> build_simulation(const Scene& scene) {
                     .initial = c.integrator.initial_step,
                     .longest = c.integrator.max_step.value_or(StepLimits{}.longest),
                     .shortest = c.integrator.min_step};
-  auto simulation = std::make_unique<Simulation>(initial_jet(scene), build_dynamics(c),
+  auto simulation = std::make_unique<Simulation>(initial_jet(scene), build_dynamics(scene),
                                                  std::move(integrator), limits);
   if (c.integrator.events == EventPlacement::step_end)
     simulation->snap_events_to_step_ends();

@@ -144,6 +144,7 @@ double Simulation::attempt_step(double h) {
   for (;;) {
     const StepOutcome outcome = integrator_->attempt(*dynamics_, jet_.time, h, jet_.y);
     statistics_.evaluations = dynamics_->evaluations();
+    statistics_.coulomb_error = dynamics_->coulomb_error();
     if (limits_.fixed) {
       if (std::isnan(outcome.error)) fail(h, "the state is not a number after");
       break;

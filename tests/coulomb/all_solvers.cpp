@@ -6,10 +6,13 @@
 #include "ehdjet/coulomb/direct_sum.hpp"
 #include "ehdjet/coulomb/make_solver.hpp"
 
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 
+#include "coulomb/cluster_solver.hpp"
 #include "coulomb/direct_sum_with.hpp"
+#include "coulomb/expansions.hpp"
 #include "coulomb/pair_tiles.hpp"
 
 namespace ehdjet::detail {
@@ -50,7 +53,14 @@ struct FourTargets : EightLanes {
 
 template <class Simd>
 std::unique_ptr<CoulombSolver> direct_sum_on() {
-  return make_direct_sum_with({add_fields<Simd>, Simd::targets});
+  return make_direct_sum_with(pair_kernel<Simd>());
+}
+
+PairKernel eight_lane_pairs() {
+  return pair_kernel<EightLanes>();
+}
+ExpansionKernel eight_lane_expansions() {
+  return expansion_kernel<EightLanes>();
 }
 
 } // namespace
@@ -64,6 +74,21 @@ std::unique_ptr<CoulombSolver> direct_sum() {
   return level <= best_simd_level() ? make_direct_sum(level) : nullptr;
 }
 
+// The laws below are about each bead, whatever its charge.
+constexpr char fmm[] = "fmm", treecode[] = "treecode", automatic[] = "auto";
+template <const char* name, int digits>
+std::unique_ptr<CoulombSolver> per_bead() {
+  return make_coulomb_solver({.solver = name,
+                              .tolerance = std::pow(10.0, -digits),
+                              .norm = ToleranceNorm::per_bead});
+}
+template <auto make, auto pairs, auto expansions>
+std::unique_ptr<CoulombSolver> with_kernels() {
+  return make(
+      {.pairs = pairs(), .expansions = expansions()},
+      {.tolerance = 1e-8, .norm = ToleranceNorm::per_bead, .order = 11, .leaf = 16});
+}
+
 } // namespace
 
 const std::vector<SolverCase>& all_solvers() {
@@ -74,6 +99,19 @@ const std::vector<SolverCase>& all_solvers() {
       {"direct_avx512", direct_sum<SimdLevel::avx512>},
       {"direct_eight_lanes", detail::direct_sum_on<detail::EightLanes>},
       {"direct_four_targets", detail::direct_sum_on<detail::FourTargets>},
+      {"fmm", per_bead<fmm, 6>},
+      {"fmm_tight", per_bead<fmm, 11>},
+      {"fmm_portable",
+       with_kernels<detail::make_fast_multipole, detail::portable_pair_kernel,
+                    detail::portable_expansion_kernel>},
+      {"fmm_eight_lanes",
+       with_kernels<detail::make_fast_multipole, detail::eight_lane_pairs,
+                    detail::eight_lane_expansions>},
+      {"treecode", per_bead<treecode, 6>},
+      {"treecode_tight", per_bead<treecode, 11>},
+      {"treecode_eight_lanes", with_kernels<detail::make_treecode, detail::eight_lane_pairs,
+                                            detail::eight_lane_expansions>},
+      {"automatic", per_bead<automatic, 6>},
   };
   return cases;
 }

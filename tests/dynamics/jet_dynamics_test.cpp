@@ -20,7 +20,7 @@ constexpr double epsilon = std::numeric_limits<double>::epsilon();
 
 std::vector<std::string> term_names(const Scene& scene) {
   std::vector<std::string> names;
-  const auto dynamics = build_dynamics(scene.config);
+  const auto dynamics = build_dynamics(scene);
   for (const auto& term : dynamics->terms()) names.emplace_back(term->name());
   return names;
 }
@@ -49,7 +49,7 @@ TEST(Composition, a_scene_has_the_terms_it_names_and_no_others) {
 TEST(Composition, stress_is_a_column_only_of_a_fluid_that_can_hold_it) {
   Scene s = case_one();
   const auto columns = [&] { return initial_jet(s).y.size() / initial_jet(s).beads(); };
-  const auto has_stress = [&] { return build_dynamics(s.config)->has_stress(); };
+  const auto has_stress = [&] { return build_dynamics(s)->has_stress(); };
   EXPECT_EQ(columns(), 7U);
   EXPECT_TRUE(has_stress());
   s.config.viscoelasticity = ViscoelasticityConfig{.elastic_modulus = 0, .viscosity = 2};
@@ -101,7 +101,7 @@ struct Rates {
 TEST(GoldenForces, at_the_start_are_those_of_an_independent_computation) {
   for (const std::string kind : {"free", "held"}) {
     const GoldenChain golden(kind);
-    const auto dynamics = build_dynamics(golden.scene.config);
+    const auto dynamics = build_dynamics(golden.scene);
     Chain chain = as_chain(initial_jet(golden.scene));
     for (const auto& term : dynamics->terms()) {
       const std::string column = term->name() == "Coulomb"                   ? "coulomb"
@@ -124,7 +124,7 @@ TEST(GoldenForces, of_surface_tension_sum_to_zero_only_in_the_line_form) {
   Chain chain = as_chain(initial_jet(golden.scene));
   for (const auto form : {SurfaceTensionForm::paper, SurfaceTensionForm::line}) {
     golden.scene.config.surface_tension->form = form;
-    const auto dynamics = build_dynamics(golden.scene.config);
+    const auto dynamics = build_dynamics(golden.scene);
     const std::vector<Vec3> f = chain.force(*dynamics->terms().at(2));
     if (form == SurfaceTensionForm::line) {
       EXPECT_GT(f[3].norm(), 0);
@@ -142,7 +142,7 @@ TEST(JetDynamics, divides_the_summed_force_by_each_beads_own_mass) {
   GoldenChain golden("free");
   for (std::size_t k = 0; k < golden.size(); ++k)
     golden.scene.chain.mass[k] *= 1 + static_cast<double>(k);
-  const auto dynamics = build_dynamics(golden.scene.config);
+  const auto dynamics = build_dynamics(golden.scene);
   const JetState jet = initial_jet(golden.scene);
   const Rates rates(*dynamics, 0, jet);
   Chain chain = as_chain(jet);
@@ -161,7 +161,7 @@ TEST(JetDynamics, positions_change_with_the_velocities) {
   GoldenChain golden("free");
   for (std::size_t k = 0; k < golden.size(); ++k)
     golden.scene.chain.vy[k] = 1 + static_cast<double>(k);
-  const auto dynamics = build_dynamics(golden.scene.config);
+  const auto dynamics = build_dynamics(golden.scene);
   const Rates rates(*dynamics, 0, initial_jet(golden.scene));
   for (std::size_t k = 0; k < golden.size(); ++k)
     EXPECT_EQ(rates.columns.position()[k], Vec3(0, 1 + static_cast<double>(k), 0)) << k;
@@ -180,11 +180,11 @@ TEST(JetDynamics, held_ends_do_not_move_but_act_on_the_others) {
   GoldenChain golden("free");
   const JetState jet = initial_jet(golden.scene);
   const std::size_t n = jet.links();
-  const auto free = build_dynamics(golden.scene.config);
+  const auto free = build_dynamics(golden.scene);
   const Rates free_rates(*free, 0, jet);
   for (const auto ends : {FixedEnds::first, FixedEnds::last, FixedEnds::both}) {
     golden.scene.config.chain->fixed = ends;
-    const auto dynamics = build_dynamics(golden.scene.config);
+    const auto dynamics = build_dynamics(golden.scene);
     const Rates rates(*dynamics, 0, jet);
     EXPECT_EQ(moves(rates, 0), ends == FixedEnds::last);
     EXPECT_EQ(moves(rates, n), ends == FixedEnds::first);
@@ -215,7 +215,7 @@ JetState with_embryo(double distance, double t) {
 TEST(JetDynamics, puts_nozzle_and_embryo_in_their_places_at_any_time) {
   const double t = 1.234e-3, angle = 12.34;
   JetState jet = with_embryo(3.7e-4, t);
-  const auto dynamics = build_dynamics(case_one().config);
+  const auto dynamics = build_dynamics(case_one());
   dynamics->bind(jet);
   std::vector<double> rate(jet.y.size());
   dynamics->evaluate(t, jet.y, rate);
@@ -235,7 +235,7 @@ TEST(JetDynamics, puts_nozzle_and_embryo_in_their_places_at_any_time) {
 TEST(JetDynamics, nozzle_embryo_and_landed_beads_have_no_rates) {
   JetState jet = with_embryo(3.7e-4, 0);
   jet.landed = {{.bead = 3, .time = 0, .radius = 0}};
-  const auto dynamics = build_dynamics(case_one().config);
+  const auto dynamics = build_dynamics(case_one());
   const Rates rates(*dynamics, 0, jet);
   for (const std::size_t k : {0U, 1U, 3U}) expect_no_rate(rates, k);
   EXPECT_TRUE(moves(rates, 2) && moves(rates, 4));
@@ -245,7 +245,7 @@ TEST(JetDynamics, nozzle_embryo_and_landed_beads_have_no_rates) {
 // strain rate of the link that ends there, across an embryo.
 TEST(JetDynamics, the_link_at_the_nozzle_sees_the_nozzles_velocity) {
   JetState jet = with_embryo(3.7e-4, 0);
-  const auto dynamics = build_dynamics(case_one().config);
+  const auto dynamics = build_dynamics(case_one());
   const Rates rates(*dynamics, 0, jet);
   const Vec3 nozzle(0, 1e-5, 0), nozzle_velocity(pvp::velocity, 0, 0.1);
   const Vec3 d = jet.columns().position()[2] - nozzle;
@@ -260,7 +260,7 @@ TEST(JetDynamics, the_link_at_the_nozzle_sees_the_nozzles_velocity) {
 TEST(JetDynamics, an_embryo_acts_with_the_share_of_its_charge_that_the_distance_gives) {
   Scene scene = case_one();
   scene.config.viscoelasticity.reset(), scene.config.surface_tension.reset();
-  const auto dynamics = build_dynamics(scene.config);
+  const auto dynamics = build_dynamics(scene);
   for (const double distance : {3e-4, 3.5e-4, 3.8e-4, 4e-4}) {
     JetState jet = with_embryo(distance, 0);
     jet.y.resize(6 * jet.beads());
@@ -292,7 +292,7 @@ TEST(JetDynamics, a_landed_leading_bead_keeps_pulling_with_its_last_stress) {
   Scene scene = case_one();
   scene.config.coulomb.reset(), scene.config.surface_tension.reset();
   scene.config.field.reset(), scene.config.gravity.reset();
-  const auto dynamics = build_dynamics(scene.config);
+  const auto dynamics = build_dynamics(scene);
   const Rates rates(*dynamics, 0, jet);
   const auto tension = [&](std::size_t k) -> Vec3 {
     const Vec3 d = jet.columns().position()[k] - jet.columns().position()[k - 1];
@@ -309,7 +309,7 @@ TEST(JetDynamics, counts_coincident_pairs_over_all_evaluations) {
   add_bead(scene, pvp_bead({0, 0, 0})), add_bead(scene, pvp_bead({1e-3, 2e-3, 0}));
   add_bead(scene, pvp_bead({2e-3, 1e-3, 1e-3})), add_bead(scene, pvp_bead({1e-3, 2e-3, 0}));
   scene.config.coulomb = CoulombConfig{};
-  const auto dynamics = build_dynamics(scene.config);
+  const auto dynamics = build_dynamics(scene);
   for (std::uint64_t call = 1; call <= 3; ++call) {
     const Rates rates(*dynamics, 0, initial_jet(scene));
     for (const double r : rates.rate) EXPECT_TRUE(std::isfinite(r));
@@ -332,7 +332,7 @@ private:
 
 TEST(Diagnosis, names_the_bead_and_the_term_whose_force_is_not_a_number) {
   GoldenChain golden("free");
-  const auto dynamics = build_dynamics(golden.scene.config);
+  const auto dynamics = build_dynamics(golden.scene);
   dynamics->add(std::make_unique<Poison>(7));
   const JetState jet = initial_jet(golden.scene);
   dynamics->bind(jet);
@@ -343,7 +343,7 @@ TEST(Diagnosis, names_the_bead_and_the_term_whose_force_is_not_a_number) {
 
 TEST(Diagnosis, names_a_bead_whose_state_is_not_a_number) {
   GoldenChain golden("free");
-  const auto dynamics = build_dynamics(golden.scene.config);
+  const auto dynamics = build_dynamics(golden.scene);
   JetState jet = initial_jet(golden.scene);
   jet.columns().velocity().y[5] = std::nan("");
   dynamics->bind(jet);
@@ -353,7 +353,7 @@ TEST(Diagnosis, names_a_bead_whose_state_is_not_a_number) {
 
 TEST(Diagnosis, names_the_strongest_force_if_all_are_numbers) {
   GoldenChain golden("free");
-  const auto dynamics = build_dynamics(golden.scene.config);
+  const auto dynamics = build_dynamics(golden.scene);
   const JetState jet = initial_jet(golden.scene);
   dynamics->bind(jet);
   const std::string why = dynamics->diagnosis(0, jet.y, 0);

@@ -39,9 +39,7 @@ struct Books {
   RunStatistics statistics;
   std::vector<DepositedBead> deposited;
   std::vector<RefinementRecord> refined;
-  EventContext with(JetState& jet) {
-    return {jet, ledger, statistics, deposited, refined};
-  }
+  EventContext with(JetState& jet) { return {jet, ledger, statistics, deposited, refined}; }
 };
 
 TEST(NewBead, carries_what_a_cylinder_of_one_link_holds) {

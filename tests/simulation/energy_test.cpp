@@ -36,7 +36,7 @@ public:
       , paper_(pvp::surface_tension) {
     Scene scene = golden.scene;
     scene.config.surface_tension->form = form;
-    dynamics_ = build_dynamics(scene.config);
+    dynamics_ = build_dynamics(scene);
     jet_ = initial_jet(scene);
     dynamics_->bind(jet_);
     chain_.mass = jet_.mass, chain_.charge = jet_.charge, chain_.volume = jet_.volume;

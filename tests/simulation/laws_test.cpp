@@ -304,7 +304,7 @@ TEST(Failure, a_nan_is_never_accepted_and_named) {
   for (const std::string& method : methods) {
     Scene scene = golden.scene;
     integrate(scene, method, suitable(method));
-    auto dynamics = build_dynamics(scene.config);
+    auto dynamics = build_dynamics(scene);
     dynamics->add(std::make_unique<Fuse>(7, blows_at));
     const bool adaptive = scene.config.integrator.rtol.has_value();
     ErrorScale scale{.rtol = 1e-6, .column_scale = {2e-4, 2e-4, 2e-4, 1, 1, 1, 500}};

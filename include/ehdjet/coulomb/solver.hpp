@@ -4,7 +4,9 @@
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 
 namespace ehdjet {
@@ -42,6 +44,15 @@ public:
   [[nodiscard]] virtual std::size_t coincident_pairs() const = 0;
   [[nodiscard]] virtual CoulombAccuracy accuracy() const = 0;
   [[nodiscard]] virtual std::string_view name() const = 0;
+
+  /// What does the work and why, for people to read.
+  [[nodiscard]] virtual std::string description() const { return std::string(name()); }
+  /// Makes the criterion that keeps the tolerance stricter, after a violation.
+  virtual void tighten() {}
+  /// Relative L2 error at the last check against the direct sum; none if there are no checks.
+  [[nodiscard]] virtual std::optional<double> measured_error() const { return {}; }
+  /// Checks that found more than the tolerance.
+  [[nodiscard]] virtual std::size_t violations() const { return 0; }
 };
 
 } // namespace ehdjet

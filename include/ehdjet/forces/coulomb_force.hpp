@@ -21,6 +21,10 @@ public:
   [[nodiscard]] std::uint64_t coincident_pairs() const override {
     return coincident_pairs_;
   }
+  [[nodiscard]] std::string method() const override { return solver_->description(); }
+  [[nodiscard]] std::optional<double> measured_error() const override {
+    return solver_->measured_error();
+  }
 
 private:
   std::unique_ptr<CoulombSolver> solver_;

@@ -4,7 +4,9 @@
 #include "ehdjet/jet/stage.hpp"
 
 #include <cstdint>
+#include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 
 namespace ehdjet {
@@ -21,6 +23,10 @@ public:
   [[nodiscard]] virtual std::string_view name() const = 0;
   /// Pairs of beads at zero distance that were skipped so far, all evaluations together.
   [[nodiscard]] virtual std::uint64_t coincident_pairs() const { return 0; }
+  /// How the term is computed, if there is something to tell.
+  [[nodiscard]] virtual std::string method() const { return {}; }
+  /// Relative error at the last comparison with an exact method, if there are such.
+  [[nodiscard]] virtual std::optional<double> measured_error() const { return {}; }
 };
 
 /// A force term with an internal variable per link, integrated with the jet.

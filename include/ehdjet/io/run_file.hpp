@@ -33,7 +33,7 @@ public:
   RunFile& operator=(const RunFile&) = delete;
 
   /// Observers that write to this file; they must not outlive it. `interval` in [s].
-  std::unique_ptr<Observer> observables(double interval);
+  std::unique_ptr<Observer> observables(double interval, bool with_coulomb_error = false);
   std::unique_ptr<Observer> frames(double interval, bool with_stress);
   std::unique_ptr<Observer> deposit();
   std::unique_ptr<Observer> refinements(bool with_coulomb_energy);
@@ -42,6 +42,8 @@ public:
 
   /// Makes everything written so far readable by others.
   void flush();
+  /// How the Coulomb force was computed, a root attribute.
+  void note_coulomb(const std::string& method);
   /// Last words: status "complete", "interrupted" or "failed", a message, the run's cost and
   /// what entered and left the jet.
   void finish(const std::string& status, const std::string& message,

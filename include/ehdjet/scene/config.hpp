@@ -1,5 +1,7 @@
 #pragma once
 
+#include "ehdjet/coulomb/solver_options.hpp"
+
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -73,6 +75,14 @@ struct GravityConfig {
 
 struct CoulombConfig {
   std::string solver = "direct";
+  double tolerance = 1e-6; ///< of the net force, what all but the direct sum keep [-]
+  ToleranceNorm tolerance_norm = ToleranceNorm::global;
+  // For studies; otherwise they follow from the tolerance.
+  std::optional<std::size_t> order = {};
+  std::optional<double> opening = {};
+  std::optional<std::size_t> leaf = {};
+  std::optional<std::size_t> check_every = {}; ///< evaluations between checks of the error
+  std::optional<std::string> calibration = {}; ///< file written by `ehdjet calibrate`
   bool operator==(const CoulombConfig&) const = default;
 };
 

@@ -3,6 +3,7 @@
 #include "ehdjet/scene/config.hpp"
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,8 +12,9 @@ namespace ehdjet {
 /// A scene that has been read and found valid.
 struct Scene {
   SceneConfig config;
-  ChainBeads chain;  ///< the beads of a chain scene; empty for a nozzle scene
-  std::string given; ///< the text as read, byte for byte
+  ChainBeads chain;               ///< the beads of a chain scene; empty for a nozzle scene
+  std::optional<CostModel> costs; ///< of the calibration that the scene names
+  std::string given;              ///< the text as read, byte for byte
 };
 
 /// Reads and validates a scene file (TOML). `overrides` are "table.key=value" as given to --set,

@@ -69,6 +69,8 @@ inline constexpr Choices<SurfaceTensionForm, 2> surface_tension_forms{
     {{"paper", SurfaceTensionForm::paper}, {"line", SurfaceTensionForm::line}}};
 inline constexpr Choices<EventPlacement, 2> event_placements{
     {{"located", EventPlacement::located}, {"step-end", EventPlacement::step_end}}};
+inline constexpr Choices<ToleranceNorm, 2> tolerance_norms{
+    {{"global", ToleranceNorm::global}, {"per-bead", ToleranceNorm::per_bead}}};
 inline constexpr Choices<LandingSteps, 2> landing_steps{
     {{"auto", LandingSteps::automatic}, {"located", LandingSteps::located}}};
 inline constexpr Choices<ErrorNorm, 2> error_norms{
@@ -181,6 +183,30 @@ template <class V>
 void describe(V& v, CoulombConfig& c) {
   v.optional("solver", c.solver, coulomb_solver_names(),
              "how the mutual forces are summed");
+  v.optional(
+      "tolerance", c.tolerance, between("-", 1e-13, 0.1),
+      "largest relative error of the net force, |dF|/|F| over all beads; the direct sum "
+      "is exact");
+  v.optional(
+      "tolerance_norm", c.tolerance_norm, tolerance_norms,
+      "what the tolerance is relative to: the net force, or for each bead the sum of the "
+      "magnitudes that act on it");
+  v.optional("order", c.order, between("-", 2, 22), "order of the expansions, for studies",
+             "follows from the tolerance");
+  v.optional("opening", c.opening, positive("-", 0.99),
+             "largest radius over distance at which a cluster acts as one, for studies",
+             "0.75, and what the tolerance allows");
+  v.optional("leaf", c.leaf, between("-", 8, 4096),
+             "beads per leaf of the cluster tree, a multiple of 8, for studies",
+             "follows from the tolerance");
+  v.optional("check_every", c.check_every, between("-", 1, 1e12),
+             "evaluations between comparisons with the direct sum on sampled beads",
+             "there are none");
+  v.optional(
+      "calibration", c.calibration, AnyText{},
+      "costs that \"auto\" goes by, a file written by `ehdjet calibrate`; relative to the "
+      "scene file",
+      "those that come with the program");
 }
 
 template <class V>

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "ehdjet/coulomb/solver_options.hpp"
 #include "ehdjet/scene/config.hpp"
 #include "ehdjet/scene/read_scene.hpp"
 #include "ehdjet/simulation/simulation.hpp"
@@ -16,7 +17,11 @@ namespace ehdjet {
 std::unique_ptr<Simulation> build_simulation(const Scene& scene);
 
 /// The right-hand side alone.
-std::unique_ptr<JetDynamics> build_dynamics(const SceneConfig& config);
+std::unique_ptr<JetDynamics> build_dynamics(const Scene& scene);
+
+/// What a scene asks of the Coulomb solver.
+SolverOptions solver_options(const CoulombConfig& config,
+                             const std::optional<CostModel>& costs);
 
 /// The jet at t = 0: nozzle and one bead (model 4), or the given chain.
 JetState initial_jet(const Scene& scene);

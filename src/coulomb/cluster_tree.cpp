@@ -1,0 +1,101 @@
+#include "cluster_tree.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "expansion_kernel.hpp"
+
+namespace ehdjet::detail {
+namespace {
+
+constexpr std::size_t parallel_from = 4096; // charges
+
+double norm(double x, double y, double z) {
+  return std::sqrt(x * x + y * y + z * z);
+}
+
+} // namespace
+
+void ClusterTree::shape(std::size_t n, std::size_t leaf) {
+  if (n == n_ && leaf == leaf_) return;
+  n_ = n, leaf_ = leaf;
+  clusters_.clear(), leaves_.clear(), levels_.clear();
+  const std::size_t length = (n + padding - 1) / padding * padding;
+  clusters_.push_back({.end = static_cast<std::uint32_t>(length)});
+  levels_.push_back(0);
+  std::size_t level_end = 1;
+  for (std::size_t i = 0; i < clusters_.size(); ++i) {
+    if (i == level_end)
+      levels_.push_back(static_cast<std::uint32_t>(i)), level_end = clusters_.size();
+    const std::uint32_t begin = clusters_[i].begin, end = clusters_[i].end;
+    if (end - begin <= leaf) {
+      leaves_.push_back(static_cast<std::uint32_t>(i));
+      continue;
+    }
+    // Halves are whole numbers of leaves, all full but the last one of the jet.
+    const std::size_t pieces = (end - begin + leaf - 1) / leaf;
+    const auto middle = static_cast<std::uint32_t>(begin + pieces / 2 * leaf);
+    clusters_[i].child = static_cast<std::uint32_t>(clusters_.size());
+    clusters_.push_back({.begin = begin, .end = middle});
+    clusters_.push_back({.begin = middle, .end = end});
+  }
+  levels_.push_back(static_cast<std::uint32_t>(clusters_.size()));
+}
+
+void ClusterTree::bound(const ChargeColumns& charges) {
+#pragma omp parallel for schedule(static) if (n_ >= parallel_from)
+  for (std::size_t i = 0; i < leaves_.size(); ++i)
+    bound_leaf(charges, clusters_[leaves_[i]]);
+  for (std::size_t i = clusters_.size(); i-- > 0;)
+    if (Cluster& c = clusters_[i]; !c.is_leaf())
+      bound_parent(clusters_[c.child], clusters_[c.child + 1], c);
+}
+
+void ClusterTree::bound_leaf(const ChargeColumns& charges, Cluster& leaf) const {
+  const std::size_t end = std::min<std::size_t>(leaf.end, n_);
+  const double* columns[3] = {charges.x, charges.y, charges.z};
+  for (int k = 0; k < 3; ++k) {
+    double low = columns[k][leaf.begin], high = low;
+    for (std::size_t i = leaf.begin; i < end; ++i)
+      low = std::min(low, columns[k][i]), high = std::max(high, columns[k][i]);
+    leaf.low[k] = low * ExpansionKernel::unit, leaf.high[k] = high * ExpansionKernel::unit;
+    leaf.centre[k] = (leaf.low[k] + leaf.high[k]) / 2;
+  }
+  double square = 0;
+  leaf.charge = leaf.square = 0;
+  for (std::size_t i = leaf.begin; i < end; ++i) {
+    double d2 = 0;
+    for (int k = 0; k < 3; ++k) {
+      const double d = columns[k][i] * ExpansionKernel::unit - leaf.centre[k];
+      d2 += d * d;
+    }
+    square = std::max(square, d2);
+    leaf.charge += std::abs(charges.q[i]);
+    leaf.square += charges.q[i] * charges.q[i];
+  }
+  leaf.square /= static_cast<double>(end - leaf.begin);
+  leaf.radius = std::sqrt(square);
+}
+
+void ClusterTree::bound_parent(const Cluster& a, const Cluster& b, Cluster& parent) {
+  for (int k = 0; k < 3; ++k) {
+    parent.low[k] = std::min(a.low[k], b.low[k]);
+    parent.high[k] = std::max(a.high[k], b.high[k]);
+    parent.centre[k] = (parent.low[k] + parent.high[k]) / 2;
+  }
+  double reach = 0; // of the children's balls
+  for (const Cluster* c : {&a, &b})
+    reach = std::max(reach, c->radius
+                                + norm(c->centre[0] - parent.centre[0],
+                                       c->centre[1] - parent.centre[1],
+                                       c->centre[2] - parent.centre[2]));
+  const double corner = norm(parent.high[0] - parent.low[0], parent.high[1] - parent.low[1],
+                             parent.high[2] - parent.low[2])
+                        / 2;
+  parent.radius = std::min(reach, corner);
+  parent.charge = a.charge + b.charge;
+  const double na = a.end - a.begin, nb = b.end - b.begin;
+  parent.square = (a.square * na + b.square * nb) / (na + nb);
+}
+
+} // namespace ehdjet::detail

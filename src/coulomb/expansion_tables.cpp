@@ -1,0 +1,107 @@
+#include "expansion_tables.hpp"
+
+#include "ehdjet/core/error.hpp"
+
+#include <cmath>
+
+namespace ehdjet::detail {
+namespace {
+
+using Real = long double;
+
+Real factorial(int n) {
+  return n < 2 ? 1 : static_cast<Real>(n) * factorial(n - 1);
+}
+
+// What turns plain harmonics (r^l P_l^m e^(im phi)/(l+m)!) into normalised ones.
+Real norm(int l, int m) {
+  return std::sqrt(factorial(l - m) * factorial(l + m));
+}
+
+/// How plain harmonics of degree l look in axes with x and z exchanged:
+/// S R_l^m = sum_n B_l[m][n] R_l^n, by recursion in l from derivatives of both sides.
+class Exchange {
+public:
+  explicit Exchange(int l)
+      : l_(l)
+      , b_(static_cast<std::size_t>((2 * l + 1) * (2 * l + 1))) {
+    if (l == 0) b_[0] = 1;
+  }
+  [[nodiscard]] Exchange next() const {
+    Exchange up(l_ + 1);
+    for (int m = -l_ - 1; m <= l_ + 1; ++m) {
+      for (int n = -l_; n <= l_; ++n)
+        up.at(m, n) = ((*this)(m + 1, n) - (*this)(m - 1, n)) / 2;
+      const auto edge = [&](int k) { return ((*this)(m + 1, k) + (*this)(m - 1, k)) / 2; };
+      up.at(m, -l_ - 1) = (*this)(m, -l_) + edge(-l_);
+      up.at(m, l_ + 1) = edge(l_) - (*this)(m, l_);
+    }
+    return up;
+  }
+  Real operator()(int m, int n) const { // 0 beyond the matrix
+    if (std::abs(m) > l_ || std::abs(n) > l_) return 0;
+    return b_[static_cast<std::size_t>((m + l_) * (2 * l_ + 1) + n + l_)];
+  }
+  [[nodiscard]] Real normalised(int m, int n) const {
+    return (*this)(m, n) * norm(l_, m) / norm(l_, n);
+  }
+
+private:
+  Real& at(int m, int n) {
+    return b_[static_cast<std::size_t>((m + l_) * (2 * l_ + 1) + n + l_)];
+  }
+  int l_;
+  std::vector<Real> b_;
+};
+
+Real parity(int n) {
+  return n % 2 == 0 ? 1 : -1;
+}
+
+} // namespace
+
+ExpansionTables::ExpansionTables(int p)
+    : order_(p) {
+  EHDJET_EXPECTS(p >= 1 && p <= highest_order);
+  const auto push = [](std::vector<double>& v, Real x) {
+    v.push_back(static_cast<double>(x));
+  };
+  Exchange s(0);
+  for (int l = 0; l <= p; ++l) {
+    if (l > 0) s = s.next();
+    for (int m = 0; m <= l; ++m) {
+      for (int n = (l - m) % 2; n <= l; n += 2)
+        push(swap_, n == 0 ? s.normalised(m, 0)
+                           : s.normalised(m, n) + parity(n) * s.normalised(m, -n));
+      for (int n = 1 + (l - m) % 2; m > 0 && n <= l; n += 2)
+        push(swap_, s.normalised(m, n) - parity(n) * s.normalised(m, -n));
+    }
+  }
+  for (int m = 0; m <= p; ++m)
+    for (int k = m; k <= p; ++k)
+      for (int l = m; l <= p; ++l)
+        push(multipole_to_local_, factorial(l + k) / (norm(k, m) * norm(l, m)));
+  for (int m = 0; m <= p; ++m)
+    for (int l = m; l <= p; ++l)
+      for (int j = m; j <= l; ++j) push(shift_, norm(l, m) / norm(j, m) / factorial(l - j));
+  for (int m = 0; m <= p + 1; ++m)
+    for (int l = m + 1; l <= p + 1; ++l) {
+      const Real d = static_cast<Real>(l + m) * (l - m);
+      push(upward_, (2 * l - 1) / d * norm(l, m) / norm(l - 1, m));
+      push(upward_, l - 2 < m ? 0 : -norm(l, m) / norm(l - 2, m) / d);
+    }
+  push(diagonal_, 1);
+  for (int m = 1; m <= p + 1; ++m)
+    push(diagonal_, -norm(m, m) / norm(m - 1, m - 1) / (2 * m));
+  for (int l = 0; l <= p; ++l)
+    for (int m = 0; m <= l; ++m)
+      for (const int n : {m, m - 1, m + 1}) push(gradient_, norm(l + 1, n) / norm(l, m));
+}
+
+ExpansionNumbers ExpansionTables::numbers() const {
+  return {order_,          swap_.data(),   multipole_to_local_.data(),
+          shift_.data(),   upward_.data(), diagonal_.data(),
+          gradient_.data()};
+}
+
+} // namespace ehdjet::detail
