@@ -199,11 +199,13 @@ std::string provenance() {
 
 void bench_table2(const BenchOptions& options) {
   std::vector<const PaperRow*> chosen;
+  chosen.reserve(paper_rows.size());
   for (const PaperRow& row : paper_rows)
     if (options.rows.empty()
         || std::ranges::find(options.rows, row.name) != options.rows.end())
       chosen.push_back(&row);
   std::vector<Scene> scenes; // all are read before anything runs
+  scenes.reserve(chosen.size());
   for (const PaperRow* row : chosen)
     scenes.push_back(
         read_scene(fs::path(options.scenes) / fmt::format("{}.toml", row->scene),
@@ -246,6 +248,7 @@ void add_bench_command(CLI::App& app) {
   CLI::App* command = bench->add_subcommand(
       "table2", "Cost against the refinement length, next to the paper's Table 2");
   std::vector<std::string> names;
+  names.reserve(paper_rows.size());
   for (const PaperRow& row : paper_rows) names.emplace_back(row.name);
   command
       ->add_option("--rows", options->rows,

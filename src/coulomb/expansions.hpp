@@ -148,6 +148,10 @@ EHDJET_INLINE void scatter(int n, const VectorOf<Simd>* set, double* const* to) 
   }
 }
 
+/// Multipoles up to degree p-1, local expansions up to p: a force takes a derivative of the local
+/// expansion, so that it is made of products of degrees up to p-1 of either side, the same on both.
+/// That makes the sum of the forces vanish; multipoles of degree p would spoil it and add nothing to
+/// the order of the force.
 template <class Simd>
 void multipoles_to_locals(const ExpansionNumbers& t, const ExpansionKernel::Batch& batch) {
   using Vector = VectorOf<Simd>;
@@ -173,6 +177,7 @@ void multipoles_to_locals(const ExpansionNumbers& t, const ExpansionKernel::Batc
     for (int k = m; k <= p; ++k) {
       Vector real[2] = {}, imaginary[2] = {};
       for (int l = m; l <= p; ++l, ++u) {
+        if (l == p) continue; // see below
         const int i = re(l, m);
         for (int side = 0; side < 2; ++side) {
           real[side] += *u * a.c[side][i];

@@ -49,15 +49,15 @@ void check(const SolverOptions& o) {
 }
 
 /// Order and leaf that cost least for a tolerance (bench/coulomb_bench).
-ClusterParameters parameters(const SolverOptions& o, std::size_t coarse_leaf,
-                             std::size_t fine_leaf) {
+ClusterParameters parameters(const SolverOptions& o, double extra_order,
+                             std::size_t coarse_leaf, std::size_t fine_leaf) {
   check(o);
   const double digits = -std::log10(o.tolerance);
-  const int order = static_cast<int>(std::lround(1.35 * digits + 0.3));
+  const int order = static_cast<int>(std::lround(1.35 * digits + extra_order));
   return {.tolerance = o.tolerance,
           .norm = o.norm,
           .order = o.order.value_or(std::clamp(order, 3, detail::highest_order)),
-          .leaf = o.leaf.value_or(digits < 5 ? coarse_leaf : fine_leaf),
+          .leaf = o.leaf.value_or(digits < 7 ? coarse_leaf : fine_leaf),
           .opening = o.opening.value_or(ClusterParameters{}.opening)};
 }
 
@@ -71,11 +71,11 @@ constexpr KnownSolver known[] = {
      [](const SolverOptions&) { return make_direct_sum(); }},
     {{"treecode", "Barnes-Hut with multipoles, O(n log n), within a tolerance"},
      [](const SolverOptions& o) {
-       return detail::make_treecode(best_kernels(), parameters(o, 64, 64));
+       return detail::make_treecode(best_kernels(), parameters(o, 0.3, 64, 64));
      }},
     {{"fmm", "fast multipole method, O(n), within a tolerance"},
      [](const SolverOptions& o) {
-       return detail::make_fast_multipole(best_kernels(), parameters(o, 32, 64));
+       return detail::make_fast_multipole(best_kernels(), parameters(o, 0.6, 32, 64));
      }},
     {{"auto", "the cheapest of these for the present number of beads"},
      [](const SolverOptions& o) {

@@ -17,7 +17,7 @@ struct CostModel {
   std::vector<double> charges;    ///< ascending (c)
   std::vector<double> tolerances; ///< ascending (t)
   /// Seconds per call of each solver, (t * c), tolerance after tolerance.
-  std::array<std::vector<double>, priced_solvers.size()> seconds;
+  std::array<std::vector<double>, priced_solvers.size()> seconds = {};
 
   /// Beyond the table its edges are continued with their slope.
   /// errors : ContractViolation for a solver that is not priced
