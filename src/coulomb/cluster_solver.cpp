@@ -22,9 +22,9 @@ constexpr int scale_order = 4;
 constexpr std::size_t scale_groups = 16;
 constexpr double scale_opening = 0.4;
 
-/// Errors of many pairs add up in a force. With this share of the tolerance for each, the sum stays below
-/// it on all geometries that were tried, 150 to 1e6 charges (bench/coulomb_survey).
-constexpr double margin = 0.33;
+/// Errors of many pairs add up in a force, all with the same sign on a ring. With this share of the tolerance
+/// for each, the sum stays below it on all geometries that were tried (bench/coulomb_survey).
+constexpr double margin = 0.25;
 /// Charges that fill space have many more pairs.
 constexpr double margin_in_space = 0.2;
 
