@@ -60,7 +60,8 @@ void survey(const Options& options) {
   fmt::print(out, "geometry,charges,solver,tolerance,threads,seconds,error_l2,error_max,"
                   "error_over_tolerance\n");
   for (const auto& geometry : geometries)
-    for (const std::size_t n : {150U, 500U, 1123U, 3000U, 10000U, 30000U, 100000U, 1000000U}) {
+    for (const std::size_t n :
+         {150U, 500U, 1123U, 3000U, 10000U, 30000U, 100000U, 1000000U}) {
       if (n > options.most) continue;
       const bench::Charges c = make.at(geometry)(n);
       std::vector<double> fx(c.size()), fy(c.size()), fz(c.size());
@@ -72,14 +73,15 @@ void survey(const Options& options) {
           if (name == "direct" && tolerance != options.tolerances.front()) continue;
           for (const int threads : options.threads) {
             omp_set_num_threads(threads);
-            const auto solver = make_coulomb_solver({.solver = name, .tolerance = tolerance});
+            const auto solver =
+                make_coulomb_solver({.solver = name, .tolerance = tolerance});
             const double time = best_time(*solver, c, force, options.seconds);
             omp_set_num_threads(omp_get_num_procs());
-            const auto error =
-                sampled_error(c.r(), c.q, force, std::clamp<std::size_t>(20'000'000 / n, 100, 1000));
+            const auto error = sampled_error(
+                c.r(), c.q, force, std::clamp<std::size_t>(20'000'000 / n, 100, 1000));
             const bool direct = name == "direct";
-            fmt::print(out, "{},{},{},{},{},{:.4g},{:.3g},{:.3g},{}\n", geometry, c.size(), name,
-                       direct ? "" : fmt::format("{:g}", tolerance), threads, time,
+            fmt::print(out, "{},{},{},{},{},{:.4g},{:.3g},{:.3g},{}\n", geometry, c.size(),
+                       name, direct ? "" : fmt::format("{:g}", tolerance), threads, time,
                        error.relative_l2, error.worst_per_target,
                        direct ? "" : fmt::format("{:.3g}", error.relative_l2 / tolerance));
             std::fflush(out);
@@ -103,8 +105,10 @@ int main(int argc, char** argv) {
   app.add_option("--solvers", options.solvers)->delimiter(',')->capture_default_str();
   app.add_option("--tolerances", options.tolerances)->delimiter(',')->capture_default_str();
   app.add_option("--threads", options.threads)->delimiter(',')->capture_default_str();
-  app.add_option("--most", options.most, "Largest number of charges")->capture_default_str();
-  app.add_option("--seconds", options.seconds, "Time spent on a row")->capture_default_str();
+  app.add_option("--most", options.most, "Largest number of charges")
+      ->capture_default_str();
+  app.add_option("--seconds", options.seconds, "Time spent on a row")
+      ->capture_default_str();
   CLI11_PARSE(app, argc, argv);
   try {
     survey(options);

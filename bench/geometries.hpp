@@ -1,7 +1,7 @@
 #pragma once
 
-#include "ehdjet/core/csv_table.hpp"
 #include "ehdjet/core/columns.hpp"
+#include "ehdjet/core/csv_table.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -27,9 +27,10 @@ struct Charges {
 /// Straight for 1.6 cm, then a helix whose radius grows to 4 cm in 20 turns, 16 cm downstream:
 /// 254 cm of jet with evenly spaced beads.
 inline Charges jet(std::size_t n) {
-  constexpr int fine = 200000; // points of the arc length table
+  constexpr int fine = 200000;              // points of the arc length table
   const auto point = [](double t) -> Vec3 { // [m]
-    const double wide = std::max(0.0, (t - 0.1) / 0.9), angle = 40 * std::numbers::pi * wide;
+    const double wide = std::max(0.0, (t - 0.1) / 0.9),
+                 angle = 40 * std::numbers::pi * wide;
     return {0.16 * t, 0.04 * wide * std::cos(angle), 0.04 * wide * std::sin(angle)};
   };
   std::vector<double> arc(fine + 1);

@@ -104,8 +104,8 @@ private:
   ExpansionTables scale_tables_;
   ExpansionNumbers scale_numbers_;
   bool sorted_now_ = false; ///< the present charges were in no order along a curve
-  double strictness_ = 1; ///< halved at each violation
-  double allowed_ = 0;    ///< error of a force by one pair of clusters
+  double strictness_ = 1;   ///< halved at each violation
+  double allowed_ = 0;      ///< error of a force by one pair of clusters
   std::size_t coincident_pairs_ = 0;
   std::vector<double> multipoles_, squares_;
   std::vector<unsigned char> ignored_; ///< flags of close pairs among samples

@@ -22,7 +22,8 @@ double largest_distance(const JetState& a, const JetState& b) {
   if (a.beads() != b.beads()) return std::nan("");
   double largest = 0;
   for (std::size_t k = 0; k < a.beads(); ++k)
-    largest = std::max(largest, (a.columns().position()[k] - b.columns().position()[k]).norm());
+    largest =
+        std::max(largest, (a.columns().position()[k] - b.columns().position()[k]).norm());
   return largest;
 }
 
@@ -30,7 +31,8 @@ double largest_distance(const JetState& a, const JetState& b) {
 TEST(FastSolverRuns, differ_from_the_direct_sum_by_less_than_the_integrator_errs) {
   for (const bool refined : {false, true}) {
     const auto scene = [refined](double rtol) {
-      return refined ? refined_case(0.4 * cm, 1e-3, rtol) : case_one("dormand-prince", rtol);
+      return refined ? refined_case(0.4 * cm, 1e-3, rtol)
+                     : case_one("dormand-prince", rtol);
     };
     const double end = 8.5e-3;
     const auto exact = run(scene(1e-8), end), direct = run(scene(1e-5), end);
@@ -38,7 +40,8 @@ TEST(FastSolverRuns, differ_from_the_direct_sum_by_less_than_the_integrator_errs
     EXPECT_GT(integration, 1e-7);
     for (const std::string solver : {"fmm", "treecode", "auto"}) {
       const auto fast = run(solved_by(scene(1e-5), solver, 1e-6), end);
-      EXPECT_LT(largest_distance(fast->jet(), direct->jet()), integration) << solver << refined;
+      EXPECT_LT(largest_distance(fast->jet(), direct->jet()), integration)
+          << solver << refined;
     }
   }
 }

@@ -17,7 +17,8 @@ namespace ehdjet {
 ///
 ///     | F - F_direct |_2 / | F_direct |_2 ,
 ///
-/// and is 0 for the direct sum, whose only error is round-off.
+/// and is 0 for the direct sum, whose only error is round-off. The others stay well below it on jets; where
+/// the errors of all clusters add up with one sign, as on a ring, they may reach twice the tolerance.
 struct CoulombAccuracy {
   double tolerance = 0; ///< [-]
 };
