@@ -127,6 +127,7 @@ CostModel CostModel::measured() {
   model.charges.assign(grid_charges.begin(), grid_charges.end());
   model.tolerances.assign(grid_tolerances.begin(), grid_tolerances.end());
   std::vector<TrialJet> jets;
+  jets.reserve(grid_charges.size());
   for (const double n : grid_charges) jets.emplace_back(static_cast<std::size_t>(n));
   for (std::size_t k = 0; k < priced_solvers.size(); ++k) {
     for (const double tolerance : grid_tolerances) {

@@ -24,7 +24,7 @@ class Exchange {
 public:
   explicit Exchange(int l)
       : l_(l)
-      , b_(static_cast<std::size_t>((2 * l + 1) * (2 * l + 1))) {
+      , b_(square(2 * l + 1)) {
     if (l == 0) b_[0] = 1;
   }
   [[nodiscard]] Exchange next() const {
@@ -40,16 +40,19 @@ public:
   }
   Real operator()(int m, int n) const { // 0 beyond the matrix
     if (std::abs(m) > l_ || std::abs(n) > l_) return 0;
-    return b_[static_cast<std::size_t>((m + l_) * (2 * l_ + 1) + n + l_)];
+    return b_[index(m, n)];
   }
   [[nodiscard]] Real normalised(int m, int n) const {
     return (*this)(m, n) * norm(l_, m) / norm(l_, n);
   }
 
 private:
-  Real& at(int m, int n) {
-    return b_[static_cast<std::size_t>((m + l_) * (2 * l_ + 1) + n + l_)];
+  [[nodiscard]] std::size_t index(int m, int n) const {
+    const auto row = static_cast<std::size_t>(m + l_),
+               column = static_cast<std::size_t>(n + l_);
+    return row * (2 * static_cast<std::size_t>(l_) + 1) + column;
   }
+  Real& at(int m, int n) { return b_[index(m, n)]; }
   int l_;
   std::vector<Real> b_;
 };
@@ -58,16 +61,23 @@ Real parity(int n) {
   return n % 2 == 0 ? 1 : -1;
 }
 
+void push(std::vector<double>& v, Real x) {
+  v.push_back(static_cast<double>(x));
+}
+
 } // namespace
 
 ExpansionTables::ExpansionTables(int p)
     : order_(p) {
   EHDJET_EXPECTS(p >= 1 && p <= highest_order);
-  const auto push = [](std::vector<double>& v, Real x) {
-    v.push_back(static_cast<double>(x));
-  };
+  fill_swap();
+  fill_shifts();
+  fill_recursions();
+}
+
+void ExpansionTables::fill_swap() {
   Exchange s(0);
-  for (int l = 0; l <= p; ++l) {
+  for (int l = 0; l <= order_; ++l) {
     if (l > 0) s = s.next();
     for (int m = 0; m <= l; ++m) {
       for (int n = (l - m) % 2; n <= l; n += 2)
@@ -77,6 +87,10 @@ ExpansionTables::ExpansionTables(int p)
         push(swap_, s.normalised(m, n) - parity(n) * s.normalised(m, -n));
     }
   }
+}
+
+void ExpansionTables::fill_shifts() {
+  const int p = order_;
   for (int m = 0; m <= p; ++m)
     for (int k = m; k <= p; ++k)
       for (int l = m; l <= p; ++l)
@@ -84,6 +98,10 @@ ExpansionTables::ExpansionTables(int p)
   for (int m = 0; m <= p; ++m)
     for (int l = m; l <= p; ++l)
       for (int j = m; j <= l; ++j) push(shift_, norm(l, m) / norm(j, m) / factorial(l - j));
+}
+
+void ExpansionTables::fill_recursions() {
+  const int p = order_;
   for (int m = 0; m <= p + 1; ++m)
     for (int l = m + 1; l <= p + 1; ++l) {
       const Real d = static_cast<Real>(l + m) * (l - m);

@@ -17,11 +17,14 @@ namespace ehdjet::detail {
 ///     Re c_l^0, Re c_l^1, Im c_l^1, ..., Re c_l^l, Im c_l^l
 ///
 /// source : van Gelderen, DEOS Progress Letters 98.1 (1998) 57; Dehnen, Comput. Astrophys. Cosmol. 1 (2014) 1
+constexpr std::size_t square(int n) {
+  return static_cast<std::size_t>(n) * static_cast<std::size_t>(n);
+}
 constexpr std::size_t coefficients(int order) {
-  return static_cast<std::size_t>((order + 1) * (order + 1));
+  return square(order + 1);
 }
 constexpr std::size_t real_part(int l, int m) {
-  return static_cast<std::size_t>(l * l + (m == 0 ? 0 : 2 * m - 1));
+  return square(l) + (m == 0 ? 0 : 2 * static_cast<std::size_t>(m) - 1);
 }
 constexpr std::size_t imaginary_part(int l, int m) { // m > 0
   return real_part(l, m) + 1;
@@ -56,6 +59,10 @@ public:
   [[nodiscard]] ExpansionNumbers numbers() const;
 
 private:
+  void fill_swap();
+  void fill_shifts();
+  void fill_recursions();
+
   int order_;
   std::vector<double> swap_, multipole_to_local_, shift_, upward_, diagonal_, gradient_;
 };

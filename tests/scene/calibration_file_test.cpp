@@ -13,11 +13,13 @@ namespace ehdjet {
 namespace {
 
 class Calibration : public testing::Test {
+public:
+  ~Calibration() override { std::filesystem::remove(file_); }
+
 protected:
   Calibration()
       : file_(std::filesystem::temp_directory_path()
               / ("ehdjet_calibration." + std::to_string(::getpid()))) {}
-  ~Calibration() override { std::filesystem::remove(file_); }
   CostModel read_back(const std::string& text) {
     std::ofstream(file_) << text;
     return read_calibration(file_);
