@@ -46,6 +46,9 @@ struct ClusterParameters {
 class ClusterSolver : public CoulombSolver {
 public:
   ClusterSolver(const Kernels& kernels, const ClusterParameters& parameters);
+  ~ClusterSolver() override;
+  ClusterSolver(const ClusterSolver&) = delete;
+  ClusterSolver& operator=(const ClusterSolver&) = delete;
 
   void add_force(ConstVec3View r, std::span<const double> q, Vec3View force) final;
   [[nodiscard]] std::size_t coincident_pairs() const final { return coincident_pairs_; }
@@ -112,9 +115,6 @@ private:
 
   struct Sorted; ///< a copy in another order, for charges that do not follow a curve
   std::unique_ptr<Sorted> sorted_;
-
-public:
-  ~ClusterSolver() override;
 };
 
 std::unique_ptr<CoulombSolver> make_fast_multipole(const Kernels& kernels,

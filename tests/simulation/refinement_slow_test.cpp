@@ -20,7 +20,7 @@ double mean_beads_before(const RefinedRun& run) {
   return sum / count;
 }
 
-// Counted right before the refinements, as a prototype of another hand did.
+// Counted right before the refinements; an independent program has 267, 485.
 TEST(Table2, stationary_bead_counts_are_those_of_the_paper_s_remap) {
   Scene scene = refined_case(0.8 * cm);
   scene.config.refinement->remap = RefinementRemap::paper;
