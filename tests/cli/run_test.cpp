@@ -96,11 +96,12 @@ TEST(Run, that_fails_says_when_where_and_why_and_keeps_what_was_written) {
 TEST(Run, stops_cleanly_on_a_signal) {
   for (const std::string signal : {"INT", "TERM"}) {
     const Folder folder;
-    const Outcome o =
-        command(folder,
-                "run " + std::string(EHDJET_SCENES "/pvp.toml")
-                    + " -o jet.h5 --set run.end_time=100 --set output.observables=1e-6",
-                "timeout --preserve-status -s " + signal + " 2");
+    const Outcome o = command(
+        folder,
+        "run " + std::string(EHDJET_SCENES "/pvp.toml")
+            + " -o jet.h5 --set run.end_time=100 --set output.observables=1e-6",
+        // --foreground: else the signal may come twice, and the second one ends it at once
+        "timeout --foreground --preserve-status -s " + signal + " 2");
     EXPECT_EQ(o.exit_code, 1) << o.err;
     EXPECT_THAT(o.err,
                 AllOf(HasSubstr("SIG" + signal), HasSubstr("t = "), HasSubstr("jet.h5")));
