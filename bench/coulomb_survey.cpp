@@ -6,6 +6,7 @@
 #include "ehdjet/core/error.hpp"
 #include "ehdjet/coulomb/error_estimate.hpp"
 #include "ehdjet/coulomb/make_solver.hpp"
+#include "ehdjet/scene/calibration_file.hpp"
 
 #include <omp.h>
 
@@ -15,6 +16,7 @@
 #include <fmt/format.h>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 
 #include "geometries.hpp"
@@ -24,8 +26,8 @@ namespace {
 using namespace ehdjet;
 
 struct Options {
-  std::string output = "coulomb_survey.csv", beads;
-  std::vector<std::string> geometries{"jet", "line", "cube"};
+  std::string output = "coulomb_survey.csv", beads, calibration;
+  std::vector<std::string> geometries{"jet", "line", "ring", "cube"};
   std::vector<std::string> solvers{"direct", "treecode", "fmm"};
   std::vector<double> tolerances{1e-2, 1e-3, 1e-4, 1e-6, 1e-8, 1e-9, 1e-10, 1e-12};
   std::vector<int> threads{1};
@@ -49,12 +51,17 @@ double best_time(CoulombSolver& solver, const bench::Charges& c, Vec3View force,
 
 void survey(const Options& options) {
   std::map<std::string, std::function<bench::Charges(std::size_t)>> make{
-      {"jet", bench::jet}, {"line", bench::line}, {"cube", bench::cube}};
+      {"jet", bench::jet},
+      {"line", bench::line},
+      {"ring", bench::ring},
+      {"cube", bench::cube}};
   std::vector<std::string> geometries = options.geometries;
   if (!options.beads.empty()) {
     make["real"] = [&](std::size_t n) { return bench::real_jet(options.beads, n); };
     geometries.emplace_back("real");
   }
+  std::optional<CostModel> costs;
+  if (!options.calibration.empty()) costs = read_calibration(options.calibration);
   std::FILE* out = std::fopen(options.output.c_str(), "wx");
   if (out == nullptr) throw InputError(options.output + " exists or cannot be created");
   fmt::print(out, "geometry,charges,solver,tolerance,threads,seconds,error_l2,error_max,"
@@ -73,8 +80,8 @@ void survey(const Options& options) {
           if (name == "direct" && tolerance != options.tolerances.front()) continue;
           for (const int threads : options.threads) {
             omp_set_num_threads(threads);
-            const auto solver =
-                make_coulomb_solver({.solver = name, .tolerance = tolerance});
+            const auto solver = make_coulomb_solver(
+                {.solver = name, .tolerance = tolerance, .costs = costs});
             const double time = best_time(*solver, c, force, options.seconds);
             omp_set_num_threads(omp_get_num_procs());
             const auto error = sampled_error(
@@ -107,6 +114,14 @@ int main(int argc, char** argv) {
   app.add_option("--threads", options.threads)->delimiter(',')->capture_default_str();
   app.add_option("--most", options.most, "Largest number of charges")
       ->capture_default_str();
+  app.add_option("--most-direct", options.most_direct,
+                 "Largest number of charges of the direct sum")
+      ->capture_default_str();
+  app.add_option("--most-treecode", options.most_treecode,
+                 "Largest number of charges of the treecode")
+      ->capture_default_str();
+  app.add_option("--calibration", options.calibration,
+                 "File of `ehdjet calibrate`, for the solver \"auto\"");
   app.add_option("--seconds", options.seconds, "Time spent on a row")
       ->capture_default_str();
   CLI11_PARSE(app, argc, argv);

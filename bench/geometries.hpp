@@ -60,6 +60,17 @@ inline Charges line(std::size_t n) {
   return c;
 }
 
+/// A circle of 4 cm radius: errors of all clusters add up with one sign.
+inline Charges ring(std::size_t n) {
+  Charges c;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double angle =
+        2 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(n);
+    c.add({0.04 * std::cos(angle), 0.04 * std::sin(angle), 0}, 1e-10);
+  }
+  return c;
+}
+
 /// At random in a cube of 16 cm, in no order.
 inline Charges cube(std::size_t n) {
   std::mt19937_64 bits(1);

@@ -7,19 +7,22 @@
 #include <omp.h>
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
 #include <fmt/format.h>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "threads.hpp"
-#include "version.hpp"
 
 namespace ehdjet::cli {
 namespace {
 
 struct CalibrateOptions {
   std::string output = "calibration.toml";
+  SimdLevel simd = best_simd_level();
   std::optional<std::size_t> threads;
   bool force = false;
 };
@@ -27,11 +30,11 @@ struct CalibrateOptions {
 void calibrate(const CalibrateOptions& options) {
   use_threads(options.threads);
   TextOutput output(options.output, options.force); // an existing file is refused now
-  fmt::print(stderr, "timing the Coulomb solvers, about a minute\n");
-  const CostModel model = CostModel::measured();
+  fmt::print(stderr, "timing the Coulomb solvers, about half a minute\n");
+  const CostModel model = CostModel::measured(options.simd);
   output.print("{}",
                calibration_text(model, fmt::format("{} threads, {}", omp_get_max_threads(),
-                                                   environment().at("simd"))));
+                                                   name_of(options.simd))));
   output.close();
   fmt::print("direct sum up to\n");
   for (const double tolerance : {1e-2, 1e-3, 1e-6, 1e-9, 1e-12})
@@ -43,6 +46,21 @@ void calibrate(const CalibrateOptions& options) {
 
 } // namespace
 
+void add_calibration_option(CLI::App& command, std::string& file) {
+  command
+      .add_option("--calibration", file,
+                  "Costs that solver = \"auto\" goes by, written by `ehdjet calibrate`")
+      ->type_name("FILE");
+}
+
+std::vector<std::string> with_calibration(std::vector<std::string> overrides,
+                                          const std::string& file) {
+  if (!file.empty()) // a path in a scene is relative to the scene
+    overrides.push_back(fmt::format("coulomb.calibration=\"{}\"",
+                                    std::filesystem::absolute(file).string()));
+  return overrides;
+}
+
 void add_calibrate_command(CLI::App& app) {
   auto options = std::make_shared<CalibrateOptions>();
   CLI::App* command = app.add_subcommand(
@@ -50,6 +68,12 @@ void add_calibrate_command(CLI::App& app) {
   command->add_option("-o,--output", options->output, "File to write (TOML)")
       ->capture_default_str();
   add_threads_option(*command, options->threads);
+  std::map<std::string, SimdLevel> levels;
+  for (const SimdLevel level : simd_levels)
+    if (level <= best_simd_level()) levels[std::string(name_of(level))] = level;
+  command
+      ->add_option("--simd", options->simd, "Instruction set; default: the widest there is")
+      ->transform(CLI::CheckedTransformer(levels));
   command->add_flag("--force", options->force, "Overwrite the file if it exists");
   command->callback([options] { calibrate(*options); });
 }

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "threads.hpp"
+#include "calibrate.hpp"
 
 namespace ehdjet::cli {
 namespace {

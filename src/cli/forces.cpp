@@ -21,6 +21,7 @@
 #include <sys/resource.h>
 #include <vector>
 
+#include "calibrate.hpp"
 #include "threads.hpp"
 
 namespace ehdjet::cli {

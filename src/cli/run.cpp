@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <fmt/format.h>
 #include <memory>
@@ -16,6 +17,7 @@
 #include <string>
 #include <vector>
 
+#include "calibrate.hpp"
 #include "interrupt.hpp"
 #include "progress.hpp"
 #include "threads.hpp"
@@ -51,6 +53,35 @@ void add_observers(Simulation& simulation, RunFile& file, const SceneConfig& con
         file.resolving_power(*config.output.resolving_power, config.nozzle->link_length));
 }
 
+/// What the solver has done, unless it is the direct sum, of which there is nothing to tell.
+std::string coulomb_method(const Simulation& s) {
+  for (const auto& term : s.dynamics().terms())
+    if (std::string method = term->method(); !method.empty() && method != "direct")
+      return method;
+  return {};
+}
+
+/// Says so when a check of the Coulomb force finds more than the tolerance.
+class ViolationLog {
+public:
+  explicit ViolationLog(double tolerance)
+      : tolerance_(tolerance) {}
+  void look(const Simulation& s) {
+    const RunStatistics& statistics = s.statistics();
+    if (statistics.coulomb_violations == logged_) return;
+    logged_ = statistics.coulomb_violations;
+    fmt::print(
+        stderr,
+        "\nat t = {:.9g} s the Coulomb force was off by {:.2g}, more than the tolerance "
+        "{:g}; the solver is stricter from here on\n",
+        s.jet().time, *statistics.coulomb_error, tolerance_);
+  }
+
+private:
+  double tolerance_;
+  std::uint64_t logged_ = 0;
+};
+
 std::string summary(const Simulation& s, const Scene& scene,
                     const std::filesystem::path& file) {
   const JetState& jet = s.jet();
@@ -74,9 +105,8 @@ std::string summary(const Simulation& s, const Scene& scene,
                         cost.insertions, cost.releases, cost.landings);
   if (cost.refinements)
     text += fmt::format("  refinements   {} that changed the mesh\n", *cost.refinements);
-  for (const auto& term : s.dynamics().terms())
-    if (const std::string method = term->method(); !method.empty() && method != "direct")
-      text += fmt::format("  Coulomb       {}\n", method);
+  if (const std::string method = coulomb_method(s); !method.empty())
+    text += fmt::format("  Coulomb       {}\n", method);
   text += fmt::format("  cost          {} evaluations, {} steps, {} rejected, {:.2f} s\n",
                       cost.evaluations, cost.steps, cost.rejected, cost.wall_time);
   if (s.dynamics().coincident_pairs() > 0)
@@ -110,7 +140,11 @@ void run(const RunOptions& options) {
   std::optional<Progress> progress;
   if (!options.quiet) progress.emplace(end);
   const InterruptGuard interrupt;
+  std::optional<ViolationLog> violations;
+  if (const auto& c = scene.config.coulomb; c && c->check_every && !options.quiet)
+    violations.emplace(c->tolerance);
   simulation->after_each_step([&](const Simulation& s) {
+    if (violations) violations->look(s);
     if (progress) progress->show(s);
     if (const char* signal = InterruptGuard::signal_name())
       throw Interrupted(fmt::format("stopped by {} at t = {:.9g} s", signal, s.jet().time));
@@ -120,9 +154,8 @@ void run(const RunOptions& options) {
     if (progress) progress->finish();
     RunStatistics statistics = simulation->statistics();
     statistics.coincident_pairs = simulation->dynamics().coincident_pairs();
-    for (const auto& term : simulation->dynamics().terms())
-      if (const std::string method = term->method(); !method.empty())
-        file.note_coulomb(method);
+    if (const std::string method = coulomb_method(*simulation); !method.empty())
+      file.note_coulomb(method);
     file.finish(status, message, statistics, simulation->ledger());
   };
   const auto end_badly = [&](const char* status, const Error& e) {

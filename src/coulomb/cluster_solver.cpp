@@ -17,13 +17,15 @@ namespace {
 /// Below this many charges starting the threads costs more than they save.
 constexpr std::size_t parallel_from = 1024;
 
-/// Order of the multipoles, and number of groups of charges, from which the scale of the force is estimated.
+/// Order of the multipoles, and number of groups of charges, from which the scale of the force is
+/// estimated.
 constexpr int scale_order = 4;
-constexpr std::size_t scale_groups = 16;
+constexpr std::size_t scale_groups = 16, charges_per_scale_group = 128;
 constexpr double scale_opening = 0.4;
 
-/// Errors of many pairs add up in a force, at random or, on a ring, all with the same sign. With this share of
-/// the tolerance for each, the sum stays below half of it on jets and below twice of it on a ring.
+/// Errors of many pairs add up in a force, at random or, on a ring, all with the same sign. With this
+/// share of the tolerance for each, the sum stays below half of it on jets and below twice of it
+/// on a ring.
 constexpr double margin = 0.6;
 /// Charges that fill space have many more pairs.
 constexpr double margin_in_space = 0.2;
@@ -111,13 +113,14 @@ void ClusterSolver::compute(ConstVec3View r, std::span<const double> q, Vec3View
     const auto team = static_cast<std::size_t>(omp_get_num_threads());
     const auto thread = static_cast<std::size_t>(omp_get_thread_num());
     gather_multipoles();
+    if (parameters_.norm == ToleranceNorm::global) sample_forces();
 #pragma omp single
     {
       allowed_ =
           (sorted_now_ ? margin_in_space : margin) * strictness_ * parameters_.tolerance;
       if (parameters_.norm == ToleranceNorm::global) allowed_ *= force_scale();
-      plan();
     }
+    plan(thread, team);
     charges_.clear_field(thread);
     act(thread, team);
 #pragma omp barrier
@@ -203,23 +206,33 @@ void ClusterSolver::gather_multipoles() {
                                  std::min<std::size_t>(leaf.end, tree_.charges()),
                                  leaf.centre, multipole(leaves[i]));
   }
-  const auto levels = tree_.levels();
+  for (std::size_t level = tree_.levels().size() - 1; level-- > 0;)
+    shift_level(level, multipoles_.data(), Shift::upward);
+}
+
+void ClusterSolver::shift_level(std::size_t level, double* expansions, Shift direction) {
+  const auto clusters = tree_.clusters();
+  const std::size_t begin = tree_.levels()[level], end = tree_.levels()[level + 1];
   const std::size_t parents = kernel_.lanes / 2; // per batch
-  for (std::size_t level = levels.size() - 1; level-- > 0;) {
-    const std::size_t begin = levels[level], end = levels[level + 1];
 #pragma omp for schedule(static)
-    for (std::size_t first = begin; first < end; first += parents) {
-      ExpansionKernel::Batch batch = idle_batch();
-      for (std::size_t k = 0; k < parents && first + k < end; ++k) {
-        const Cluster& parent = clusters[first + k];
-        if (parent.is_leaf()) continue;
-        std::fill_n(multipole(first + k), set_, 0.0);
-        for (std::size_t c = 0; c < 2; ++c)
-          set_lane(batch, 2 * k + c, multipole(parent.child + c), multipole(first + k),
-                   between(clusters[parent.child + c].centre, parent.centre));
+  for (std::size_t first = begin; first < end; first += parents) {
+    ExpansionKernel::Batch batch = idle_batch();
+    for (std::size_t k = 0; k < parents && first + k < end; ++k) {
+      const Cluster& parent = clusters[first + k];
+      if (parent.is_leaf()) continue;
+      double* own = expansions + set_ * (first + k);
+      if (direction == Shift::upward) std::fill_n(own, set_, 0.0);
+      for (std::size_t c = 0; c < 2; ++c) {
+        const Cluster& child = clusters[parent.child + c];
+        double* childs = expansions + set_ * (parent.child + c);
+        if (direction == Shift::upward)
+          set_lane(batch, 2 * k + c, childs, own, between(child.centre, parent.centre));
+        else
+          set_lane(batch, 2 * k + c, own, childs, between(parent.centre, child.centre));
       }
-      kernel_.shift_multipoles(numbers_, batch);
     }
+    (direction == Shift::upward ? kernel_.shift_multipoles : kernel_.shift_locals)(numbers_,
+                                                                                   batch);
   }
 }
 
@@ -240,27 +253,36 @@ bool ClusterSolver::accepted(const Cluster& source, const Cluster& target,
   return force * tail <= allowed_ * d * d;
 }
 
-/// Root mean square of the net force, without k_C, in the units of clusters: on a few groups of charges, by low
-/// multipoles and nearby charges. The largest few do not count: if a few charges have nearly all of the
-/// force, a sample must not take them for typical.
-double ClusterSolver::force_scale() {
+/// Squares of the forces on a few groups of charges, by low multipoles and nearby charges.
+void ClusterSolver::sample_forces() {
+  const std::size_t n = tree_.charges(), groups = (n + padding - 1) / padding;
+  const std::size_t sampled = std::min(
+      groups, std::clamp<std::size_t>(n / charges_per_scale_group, 4, scale_groups));
+#pragma omp single
+  {
+    squares_.assign(sampled * padding, -1.0);
+    if (ignored_.size() < charges_.length()) ignored_.resize(charges_.length());
+  }
   const ChargeColumns c = charges_.columns();
-  const std::size_t groups = (tree_.charges() + padding - 1) / padding;
-  const std::size_t sampled = std::min(groups, scale_groups);
-  charges_.clear_field(0);
-  squares_.clear();
-  if (ignored_.size() < charges_.length()) ignored_.resize(charges_.length());
   const FieldColumns g = charges_.field(0);
   constexpr double unit = ExpansionKernel::unit;
+#pragma omp for schedule(static)
   for (std::size_t k = 0; k < sampled; ++k) {
     const std::size_t begin = groups * (2 * k + 1) / (2 * sampled) * padding;
+    for (double* column : {g.x, g.y, g.z}) std::fill_n(column + begin, padding, 0.0);
     sample_field(0, begin);
-    for (std::size_t i = begin; i < std::min(begin + padding, tree_.charges()); ++i) {
+    for (std::size_t i = begin; i < std::min(begin + padding, n); ++i) {
       const double f = c.q[i] / (unit * unit);
       const double fx = f * g.x[i], fy = f * g.y[i], fz = f * g.z[i];
-      squares_.push_back(fx * fx + fy * fy + fz * fz);
+      squares_[k * padding + i - begin] = fx * fx + fy * fy + fz * fz;
     }
   }
+}
+
+/// Root mean square of the net force, without k_C, in the units of clusters. The largest few do not
+/// count: if a few charges have nearly all of the force, a sample must not take them for typical.
+double ClusterSolver::force_scale() {
+  std::erase(squares_, -1.0); // places behind the last charge
   std::ranges::sort(squares_);
   const std::size_t kept = squares_.size() - squares_.size() / 32;
   const double sum = std::accumulate(

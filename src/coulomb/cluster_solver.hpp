@@ -12,18 +12,11 @@
 #include <vector>
 
 #include "cluster_tree.hpp"
-#include "expansion_kernel.hpp"
 #include "expansion_tables.hpp"
-#include "pair_kernel.hpp"
+#include "kernels.hpp"
 #include "scaled_charges.hpp"
 
 namespace ehdjet::detail {
-
-/// The kernels of one instruction set.
-struct Kernels {
-  PairKernel pairs;
-  ExpansionKernel expansions;
-};
 
 /// How a solver keeps its tolerance.
 struct ClusterParameters {
@@ -53,7 +46,7 @@ public:
   void add_force(ConstVec3View r, std::span<const double> q, Vec3View force) final;
   [[nodiscard]] std::size_t coincident_pairs() const final { return coincident_pairs_; }
   [[nodiscard]] CoulombAccuracy accuracy() const final {
-    return {.tolerance = parameters_.tolerance};
+    return {.tolerance = parameters_.tolerance, .norm = parameters_.norm};
   }
 
   [[nodiscard]] std::string description() const final;
@@ -62,8 +55,8 @@ public:
 protected:
   /// Allocates what further arrays the present tree needs.
   virtual void reserve(std::size_t threads) = 0;
-  /// Decides which clusters act how. One thread; multipoles are known.
-  virtual void plan() = 0;
+  /// Decides which clusters act how; multipoles are known. Every thread of the team.
+  virtual void plan(std::size_t thread, std::size_t team) = 0;
   /// Fields of all charges, into `charges_.field(...)`; every thread of the team.
   virtual void act(std::size_t thread, std::size_t team) = 0;
 
@@ -74,6 +67,12 @@ protected:
   [[nodiscard]] double* multipole(std::size_t cluster) {
     return multipoles_.data() + set_ * cluster;
   }
+
+  /// Moves the expansions of the clusters of one level to their parents (upward), where they replace
+  /// what was there, or adds those of the parents to theirs. Every thread of the team; `level` is
+  /// the parents', `expansions` has one coefficient set per cluster.
+  enum class Shift { upward, downward };
+  void shift_level(std::size_t level, double* expansions, Shift direction);
 
   struct Displacement {
     double x, y, z;
@@ -101,6 +100,7 @@ private:
   [[nodiscard]] bool is_ordered() const;
   void sort(ConstVec3View r, std::span<const double> q);
   void gather_multipoles();
+  void sample_forces();
   [[nodiscard]] double force_scale();
   void sample_field(std::uint32_t cluster, std::size_t begin);
 
@@ -110,7 +110,8 @@ private:
   double strictness_ = 1;   ///< halved at each violation
   double allowed_ = 0;      ///< error of a force by one pair of clusters
   std::size_t coincident_pairs_ = 0;
-  std::vector<double> multipoles_, squares_;
+  std::vector<double> multipoles_;
+  std::vector<double> squares_;        ///< of sampled forces, without k_C
   std::vector<unsigned char> ignored_; ///< flags of close pairs among samples
 
   struct Sorted; ///< a copy in another order, for charges that do not follow a curve

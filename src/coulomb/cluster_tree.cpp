@@ -9,6 +9,7 @@ namespace ehdjet::detail {
 namespace {
 
 constexpr std::size_t parallel_from = 4096; // charges
+constexpr std::size_t parallel_from_parents = 1024;
 
 double norm(double x, double y, double z) {
   return std::sqrt(x * x + y * y + z * z);
@@ -46,9 +47,13 @@ void ClusterTree::bound(const ChargeColumns& charges) {
 #pragma omp parallel for schedule(static) if (n_ >= parallel_from)
   for (std::size_t i = 0; i < leaves_.size(); ++i)
     bound_leaf(charges, clusters_[leaves_[i]]);
-  for (std::size_t i = clusters_.size(); i-- > 0;)
-    if (Cluster& c = clusters_[i]; !c.is_leaf())
-      bound_parent(clusters_[c.child], clusters_[c.child + 1], c);
+  for (std::size_t level = levels_.size() - 1; level-- > 0;) {
+    const std::size_t begin = levels_[level], end = levels_[level + 1];
+#pragma omp parallel for schedule(static) if (end - begin >= parallel_from_parents)
+    for (std::size_t i = begin; i < end; ++i)
+      if (Cluster& c = clusters_[i]; !c.is_leaf())
+        bound_parent(clusters_[c.child], clusters_[c.child + 1], c);
+  }
 }
 
 void ClusterTree::bound_leaf(const ChargeColumns& charges, Cluster& leaf) const {

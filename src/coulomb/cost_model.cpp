@@ -61,8 +61,10 @@ double seconds_per_call(CoulombSolver& solver, TrialJet& jet) {
   return best;
 }
 
-constexpr std::array<double, 7> grid_charges{250, 700, 2000, 6000, 2e4, 6e4, 2e5};
-constexpr std::array<double, 6> grid_tolerances{1e-12, 1e-10, 1e-8, 1e-6, 1e-4, 1e-2};
+constexpr std::array<double, 9> grid_charges{250,  500, 1000, 2000, 4000,
+                                             8000, 2e4, 6e4,  2e5};
+constexpr std::array<double, 8> grid_tolerances{1e-12, 1e-10, 1e-8, 1e-6,
+                                                1e-5,  1e-4,  1e-3, 1e-2};
 
 } // namespace
 
@@ -95,34 +97,7 @@ std::size_t CostModel::crossover(double tolerance) const {
   return high;
 }
 
-const CostModel& CostModel::shipped() {
-  // `ehdjet calibrate` on one core of an AMD EPYC (Zen 3), AVX2.
-  static const CostModel model = [] {
-    CostModel m;
-    m.charges.assign(grid_charges.begin(), grid_charges.end());
-    m.tolerances.assign(grid_tolerances.begin(), grid_tolerances.end());
-    const std::vector<double> direct{4.143e-05, 0.0002837, 0.002899, 0.02142,
-                                     0.3262,    2.936,     32.62};
-    for (std::size_t t = 0; t < grid_tolerances.size(); ++t)
-      m.seconds[0].insert(m.seconds[0].end(), direct.begin(), direct.end());
-    m.seconds[1] = {0.0002656, 0.001166,  0.007958, 0.08557, 0.809,   2.796,  9.163,
-                    0.0001585, 0.0007547, 0.005496, 0.06321, 0.555,   1.768,  5.627,
-                    0.0001397, 0.0007024, 0.005084, 0.04661, 0.2809,  0.9465, 3.441,
-                    0.0001288, 0.0006645, 0.004813, 0.03647, 0.1707,  0.5972, 2.105,
-                    0.0001202, 0.0007466, 0.004301, 0.03115, 0.1105,  0.2519, 1.01,
-                    0.0001433, 0.0007053, 0.004715, 0.01566, 0.02911, 0.0713, 0.3688};
-    m.seconds[2] = {0.0003373, 0.001122,  0.005218, 0.02903,  0.1247,   0.195,   0.4819,
-                    0.0002647, 0.0009335, 0.004638, 0.02455,  0.07929,  0.133,   0.308,
-                    0.0001445, 0.000538,  0.002998, 0.01764,  0.03934,  0.09389, 0.2065,
-                    0.0002105, 0.0005676, 0.002937, 0.01357,  0.0328,   0.06314, 0.173,
-                    0.0001648, 0.0006364, 0.003154, 0.009519, 0.01949,  0.03311, 0.08291,
-                    0.000131,  0.0005397, 0.001915, 0.00465,  0.007468, 0.01538, 0.06742};
-    return m;
-  }();
-  return model;
-}
-
-CostModel CostModel::measured() {
+CostModel CostModel::measured(SimdLevel level) {
   CostModel model;
   model.charges.assign(grid_charges.begin(), grid_charges.end());
   model.tolerances.assign(grid_tolerances.begin(), grid_tolerances.end());
@@ -137,8 +112,8 @@ CostModel CostModel::measured() {
                                 model.seconds[k].begin() + grid_charges.size());
         continue;
       }
-      const auto solver = make_coulomb_solver(
-          SolverOptions{.solver = std::string(priced_solvers[k]), .tolerance = tolerance});
+      const auto solver = make_coulomb_solver(SolverOptions{
+          .solver = std::string(priced_solvers[k]), .tolerance = tolerance, .simd = level});
       for (TrialJet& jet : jets) {
         const double n = static_cast<double>(jet.q.size());
         // Nobody sums 2e5 charges pair by pair: continued from where the sum is quadratic.

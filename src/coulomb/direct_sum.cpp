@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "direct_sum_with.hpp"
+#include "kernels.hpp"
 #include "scaled_charges.hpp"
 
 namespace ehdjet {
@@ -85,38 +86,8 @@ std::unique_ptr<CoulombSolver> detail::make_direct_sum_with(PairKernel kernel) {
   return std::make_unique<DirectSum>(kernel);
 }
 
-SimdLevel best_simd_level() {
-#if defined(__x86_64__)
-  const bool fma = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
-  if (fma && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq")
-      && __builtin_cpu_supports("avx512vl"))
-    return SimdLevel::avx512;
-  if (fma) return SimdLevel::avx2;
-#endif
-  return SimdLevel::portable;
-}
-
-std::string_view name_of(SimdLevel level) {
-  switch (level) {
-  case SimdLevel::avx512:
-    return "avx512";
-  case SimdLevel::avx2:
-    return "avx2";
-  case SimdLevel::portable:
-    break;
-  }
-  return "portable";
-}
-
 std::unique_ptr<CoulombSolver> make_direct_sum(SimdLevel level) {
-  EHDJET_EXPECTS(level <= best_simd_level());
-#if defined(__x86_64__)
-  if (level == SimdLevel::avx512)
-    return detail::make_direct_sum_with(detail::avx512_pair_kernel());
-  if (level == SimdLevel::avx2)
-    return detail::make_direct_sum_with(detail::avx2_pair_kernel());
-#endif
-  return detail::make_direct_sum_with(detail::portable_pair_kernel());
+  return detail::make_direct_sum_with(detail::kernels_of(level).pairs);
 }
 
 } // namespace ehdjet

@@ -11,23 +11,13 @@
 #include <string>
 
 #include "auto_solver.hpp"
+#include "checked_solver.hpp"
 #include "cluster_solver.hpp"
 
 namespace ehdjet {
 namespace {
 
 using detail::ClusterParameters;
-using detail::Kernels;
-
-Kernels best_kernels() {
-#if defined(__x86_64__)
-  if (best_simd_level() == SimdLevel::avx512)
-    return {detail::avx512_pair_kernel(), detail::avx512_expansion_kernel()};
-  if (best_simd_level() == SimdLevel::avx2)
-    return {detail::avx2_pair_kernel(), detail::avx2_expansion_kernel()};
-#endif
-  return {detail::portable_pair_kernel(), detail::portable_expansion_kernel()};
-}
 
 // Tighter tolerances are below what expansions and the direct sum itself can keep: forces on a
 // smooth curve are small residues.
@@ -68,14 +58,15 @@ struct KnownSolver {
 
 constexpr KnownSolver known[] = {
     {{"direct", "every pair, O(n^2): exact to round-off"},
-     [](const SolverOptions&) { return make_direct_sum(); }},
+     [](const SolverOptions& o) { return make_direct_sum(o.simd); }},
     {{"treecode", "Barnes-Hut with multipoles, O(n log n), within a tolerance"},
      [](const SolverOptions& o) {
-       return detail::make_treecode(best_kernels(), parameters(o, 0.3, 64, 64));
+       return detail::make_treecode(detail::kernels_of(o.simd), parameters(o, 0.3, 64, 64));
      }},
     {{"fmm", "fast multipole method, O(n), within a tolerance"},
      [](const SolverOptions& o) {
-       return detail::make_fast_multipole(best_kernels(), parameters(o, 0.6, 32, 64));
+       return detail::make_fast_multipole(detail::kernels_of(o.simd),
+                                          parameters(o, 0.6, 32, 64));
      }},
     {{"auto", "the cheapest of these for the present number of beads"},
      [](const SolverOptions& o) {

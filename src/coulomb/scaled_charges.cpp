@@ -17,9 +17,13 @@ int scale_exponent(double largest, int exponent) {
   return std::min(exponent - e, 1000);
 }
 
+/// Fewer charges than this are copied in less time than it takes to wake up threads.
+constexpr std::size_t parallel_from = 30'000;
+
 double largest_magnitude(std::span<const double> v) {
   double largest = 0;
-  for (const double a : v) largest = std::max(largest, std::abs(a));
+#pragma omp parallel for simd reduction(max : largest) if (v.size() >= parallel_from)
+  for (std::size_t i = 0; i < v.size(); ++i) largest = std::max(largest, std::abs(v[i]));
   return largest;
 }
 
@@ -61,7 +65,9 @@ void ScaledCharges::load(ConstVec3View r, std::span<const double> q) {
   const std::span<const double> original[4] = {r.x, r.y, r.z, q};
   for (std::size_t k = 0; k < 4; ++k) {
     double* out = column(k);
-    for (std::size_t i = 0; i < n; ++i) out[i] = scale[k] * original[k][i];
+    const double *in = original[k].data(), s = scale[k];
+#pragma omp parallel for simd schedule(static) if (n >= parallel_from)
+    for (std::size_t i = 0; i < n; ++i) out[i] = s * in[i];
     std::fill(out + n, out + length(), 0.0);
   }
   for (std::size_t i = n; i < length(); ++i)

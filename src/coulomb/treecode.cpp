@@ -21,7 +21,7 @@ private:
     const std::size_t numbers = gradient_size_ * tree_.clusters().size();
     if (gradients_.size() < numbers) gradients_.resize(numbers);
   }
-  void plan() override {}
+  void plan(std::size_t /*thread*/, std::size_t /*team*/) override {}
 
   void act(std::size_t /*thread*/, std::size_t /*team*/) override {
     const std::size_t clusters = tree_.clusters().size();

@@ -119,9 +119,9 @@ std::uint64_t JetDynamics::coincident_pairs() const {
   return pairs;
 }
 
-std::optional<double> JetDynamics::coulomb_error() const {
+std::optional<CoulombChecks> JetDynamics::coulomb_checks() const {
   for (const auto& term : terms_)
-    if (const auto error = term->measured_error()) return error;
+    if (const auto checks = term->checks()) return checks;
   return std::nullopt;
 }
 

@@ -83,10 +83,10 @@ public:
       for (const auto column : {&JetState::volume, &JetState::mass, &JetState::charge})
         std::ranges::copy(remap(behind_s(old_.*column)), fresh(jet_.*column).begin());
     }
-    if (rule_.velocity == VelocityRemap::momentum)
+    if (rule_.velocity == ColumnRemap::conservative)
       for (std::size_t c = 3; c < JetColumns<double>::kinematic_columns; ++c)
         average(c, &JetState::mass);
-    if (rule_.stress == StressRemap::conservative && old_.columns().has_stress())
+    if (rule_.stress == ColumnRemap::conservative && old_.columns().has_stress())
       average(JetColumns<double>::kinematic_columns, &JetState::volume);
     keep_landed_record();
     return std::move(jet_);

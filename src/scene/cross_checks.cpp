@@ -157,11 +157,11 @@ void check_refinement(const SceneConfig& c, const SceneText& text) {
            fmt::format("refinement.interval = {} s and run.end_time = {} s: no refinement "
                        "would happen",
                        r.interval, c.run.end_time));
-  if (r.spread && r.remap == RefinementRemap::paper)
+  if (r.spread && r.remap == LinkRemap::paper)
     refuse("spread",
            "refinement.spread and refinement.remap = \"paper\": the spread belongs "
            "to the conservative remap. Remove one");
-  const bool weighted = r.weight != RefinementWeight::uniform;
+  const bool weighted = r.weight != MeshWeight::uniform;
   for (const auto& [name, value] : {std::pair{"weight_strength", r.weight_strength},
                                     {"shortest", r.shortest},
                                     {"longest", r.longest}})
@@ -169,7 +169,7 @@ void check_refinement(const SceneConfig& c, const SceneText& text) {
       refuse(name, fmt::format("refinement.{} = {} needs a refinement.weight other than "
                                "\"uniform\": a uniform mesh has equal links",
                                name, *value));
-  if (r.weight == RefinementWeight::stress && !c.viscoelasticity)
+  if (r.weight == MeshWeight::stress && !c.viscoelasticity)
     refuse("weight", "refinement.weight = \"stress\" needs [viscoelasticity]: without it "
                      "there is no stress");
   if (r.shortest && *r.shortest > r.length)

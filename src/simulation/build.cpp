@@ -40,40 +40,21 @@ std::optional<Varicosity> varicosity_of(const SceneConfig& c) {
                     .charge = v.charge ? v.factor : 1};
 }
 
-MeshWeight mesh_weight(RefinementWeight weight) {
-  switch (weight) {
-  case RefinementWeight::curvature:
-    return MeshWeight::curvature;
-  case RefinementWeight::radius:
-    return MeshWeight::radius;
-  case RefinementWeight::stress:
-    return MeshWeight::stress;
-  case RefinementWeight::uniform:
-    break;
-  }
-  return MeshWeight::uniform;
-}
-
 RefinementRule refinement_rule(const SceneConfig& c) {
   const RefinementConfig& r = *c.refinement;
-  RefinementRule rule{
-      .mesh = {.length = r.length,
-               .weight = mesh_weight(r.weight),
-               .strength = r.weight_strength.value_or(1),
-               .shortest = r.shortest.value_or(0),
-               .longest = r.longest.value_or(MeshRule{}.longest),
-               .most_links = r.max_beads.value_or(MeshRule{}.most_links)},
-      .remap =
-          r.remap == RefinementRemap::paper ? LinkRemap::paper : LinkRemap::conservative,
-      .spread = r.spread == RefinementSpread::monotone_cubic ? Spread::monotone_cubic
-                                                             : Spread::linear,
-      .velocity = r.velocity == ColumnRemap::conservative ? VelocityRemap::momentum
-                                                          : VelocityRemap::spline,
-      .stress = r.stress == ColumnRemap::conservative ? StressRemap::conservative
-                                                      : StressRemap::spline,
-      .coarsen = r.coarsen,
-      .collector = {},
-      .has_nozzle = c.nozzle.has_value()};
+  RefinementRule rule{.mesh = {.length = r.length,
+                               .weight = r.weight,
+                               .strength = r.weight_strength.value_or(1),
+                               .shortest = r.shortest.value_or(0),
+                               .longest = r.longest.value_or(MeshRule{}.longest),
+                               .most_links = r.max_beads.value_or(MeshRule{}.most_links)},
+                      .remap = r.remap,
+                      .spread = r.spread.value_or(Spread::linear),
+                      .velocity = r.velocity,
+                      .stress = r.stress,
+                      .coarsen = r.coarsen,
+                      .collector = {},
+                      .has_nozzle = c.nozzle.has_value()};
   if (c.collector) rule.collector = c.collector->distance;
   return rule;
 }

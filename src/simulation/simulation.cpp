@@ -68,6 +68,7 @@ Simulation::Simulation(JetState jet, std::unique_ptr<JetDynamics> dynamics,
     , integrator_(std::move(integrator))
     , limits_(limits)
     , control_(integrator_->error_order())
+    , checks_coulomb_(dynamics_->coulomb_checks().has_value())
     , time_(jet_.time) {
   EHDJET_EXPECTS(limits_.fixed || integrator_->error_order() > 0);
   for (std::size_t k = 1; k < jet_.beads(); ++k) {
@@ -144,7 +145,11 @@ double Simulation::attempt_step(double h) {
   for (;;) {
     const StepOutcome outcome = integrator_->attempt(*dynamics_, jet_.time, h, jet_.y);
     statistics_.evaluations = dynamics_->evaluations();
-    statistics_.coulomb_error = dynamics_->coulomb_error();
+    if (checks_coulomb_) {
+      const CoulombChecks checks = *dynamics_->coulomb_checks();
+      statistics_.coulomb_error = checks.last;
+      statistics_.coulomb_violations = checks.violations;
+    }
     if (limits_.fixed) {
       if (std::isnan(outcome.error)) fail(h, "the state is not a number after");
       break;

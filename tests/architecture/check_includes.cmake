@@ -10,7 +10,7 @@ set(coulomb     core coulomb)
 set(forces      core jet coulomb forces)
 set(dynamics    core jet forces integrators dynamics)
 set(events      core jet refinement integrators events)
-set(scene       core coulomb integrators scene)
+set(scene       core coulomb integrators refinement scene)
 set(simulation  core jet refinement coulomb forces integrators dynamics events scene simulation)
 set(io          core jet io simulation/observer.hpp) # files see what an observer sees
 set(cli         core jet refinement coulomb forces integrators dynamics events scene simulation io cli)

@@ -13,8 +13,8 @@
 #include <string>
 #include <utility>
 
-#include "coulomb/auto_solver.hpp"
 #include "coulomb/chains.hpp"
+#include "coulomb/checked_solver.hpp"
 
 namespace ehdjet::test {
 namespace {
@@ -206,17 +206,17 @@ TEST(CheckedSolver, measures_every_so_manieth_call_and_tightens_a_solver_that_fa
   int tightened = 0;
   const auto solver = detail::make_checked_solver(std::make_unique<Wrong>(tightened), 3);
   const Chain c = random_chain(100, 1, 1);
-  EXPECT_EQ(solver->measured_error(), 0); // not yet
+  EXPECT_EQ(solver->checks()->number, 0U); // not yet
   (void)force_on(c, *solver);
-  EXPECT_NEAR(*solver->measured_error(), 1e-3, 1e-9);
-  EXPECT_EQ(solver->violations(), 1U);
+  EXPECT_NEAR(solver->checks()->last, 1e-3, 1e-9);
+  EXPECT_EQ(solver->checks()->violations, 1U);
   (void)force_on(c, *solver), (void)force_on(c, *solver);
-  EXPECT_EQ(solver->violations(), 1U); // not looked at
+  EXPECT_EQ(solver->checks()->violations, 1U); // not looked at
   (void)force_on(c, *solver);
   EXPECT_EQ(tightened, 2);
   for (int i = 0; i < 3; ++i) (void)force_on(c, *solver);
-  EXPECT_LE(*solver->measured_error(), 1e-14);
-  EXPECT_EQ(solver->violations(), 2U);
+  EXPECT_LE(solver->checks()->last, 1e-14);
+  EXPECT_EQ(solver->checks()->violations, 2U);
   EXPECT_NE(solver->description().find("3 checks"), std::string::npos);
 }
 

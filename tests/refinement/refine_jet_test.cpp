@@ -205,8 +205,8 @@ TEST(Refinement, keeps_wildly_varying_contents_positive) {
 // Bead 0 owns no link.
 TEST(Refinement, what_bead_zero_carries_plays_no_part) {
   for (RefinementRule rule : link_remaps(0.1))
-    for (const StressRemap stress : {StressRemap::spline, StressRemap::conservative}) {
-      rule.stress = stress, rule.velocity = VelocityRemap::momentum;
+    for (const ColumnRemap stress : {ColumnRemap::spline, ColumnRemap::conservative}) {
+      rule.stress = stress, rule.velocity = ColumnRemap::conservative;
       JetState jet = graded_helix(20), other = jet;
       other.columns().stress()[0] = 1e6;
       other.volume[0] = other.mass[0] = other.charge[0] = 1e6;
@@ -221,7 +221,7 @@ TEST(Refinement, what_bead_zero_carries_plays_no_part) {
 
 TEST(Refinement, keeps_momentum_and_makes_no_kinetic_energy_if_asked_to) {
   for (RefinementRule rule : link_remaps(0.05)) { // whatever becomes of the masses
-    rule.velocity = VelocityRemap::momentum;
+    rule.velocity = ColumnRemap::conservative;
     JetState jet = graded_helix(60);
     const Sums before(jet);
     ASSERT_TRUE(refine_jet(jet, rule));
@@ -235,7 +235,7 @@ TEST(Refinement, keeps_momentum_and_makes_no_kinetic_energy_if_asked_to) {
 
 TEST(Refinement, keeps_volume_times_stress_and_makes_no_elastic_energy_if_asked_to) {
   for (RefinementRule rule : link_remaps(0.05)) {
-    rule.stress = StressRemap::conservative;
+    rule.stress = ColumnRemap::conservative;
     JetState jet = graded_helix(60);
     const Sums before(jet);
     ASSERT_TRUE(refine_jet(jet, rule));
@@ -257,7 +257,7 @@ TEST(Refinement, a_uniformly_stretching_jet_keeps_stretching_uniformly) {
   }
   const double length = along.dot(prepare.position()[40]);
   for (RefinementRule rule : link_remaps(0.2)) {
-    rule.stress = name(rule) == "linear" ? StressRemap::conservative : StressRemap::spline;
+    rule.stress = name(rule) == "linear" ? ColumnRemap::conservative : ColumnRemap::spline;
     JetState refined = jet;
     const auto change = refine_jet(refined, rule);
     ASSERT_TRUE(change);
@@ -416,7 +416,7 @@ TEST(Refinement, works_without_stresses) {
   JetState with = graded_helix(40), without = with;
   without.y.resize(6 * without.beads());
   RefinementRule rule = cut(0.1);
-  rule.stress = StressRemap::conservative;
+  rule.stress = ColumnRemap::conservative;
   ASSERT_TRUE(refine_jet(with, rule));
   ASSERT_TRUE(refine_jet(without, rule));
   with.y.resize(6 * with.beads());
@@ -457,7 +457,7 @@ TEST(Refinement, passes_an_embryo_by) {
     for (const MeshWeight weight : {MeshWeight::uniform, MeshWeight::radius}) {
       RefinementRule rule = base;
       rule.mesh.weight = weight;
-      rule.velocity = VelocityRemap::momentum, rule.stress = StressRemap::conservative;
+      rule.velocity = ColumnRemap::conservative, rule.stress = ColumnRemap::conservative;
       JetState without = graded_helix(40), with = without;
       insert_bead(with, 1,
                   {.position = {5, 6, 7},
@@ -521,8 +521,8 @@ JetState landing_jet() {
 
 TEST(Refinement, a_landed_leading_bead_stays_the_last_one_where_and_as_it_is) {
   for (const RefinementRule& base : link_remaps(0.05))
-    for (const VelocityRemap velocity : {VelocityRemap::spline, VelocityRemap::momentum})
-      for (const StressRemap stress : {StressRemap::spline, StressRemap::conservative}) {
+    for (const ColumnRemap velocity : {ColumnRemap::spline, ColumnRemap::conservative})
+      for (const ColumnRemap stress : {ColumnRemap::spline, ColumnRemap::conservative}) {
         RefinementRule rule = base;
         rule.velocity = velocity, rule.stress = stress, rule.collector = 1;
         const JetState old = landing_jet();

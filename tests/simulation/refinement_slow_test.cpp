@@ -23,7 +23,7 @@ double mean_beads_before(const RefinedRun& run) {
 // Counted right before the refinements; an independent program has 267, 485.
 TEST(Table2, stationary_bead_counts_are_those_of_the_paper_s_remap) {
   Scene scene = refined_case(0.8 * cm);
-  scene.config.refinement->remap = RefinementRemap::paper;
+  scene.config.refinement->remap = LinkRemap::paper;
   RefinedRun coarse(scene);
   coarse.simulation->run_until(45e-3);
   EXPECT_NEAR(mean_beads_before(coarse) / 267, 1, 0.03);

@@ -51,7 +51,7 @@ TEST(RefinedJet, is_cut_at_the_end_of_a_run_too_and_with_fixed_steps_and_snapped
 
 // 200 refinements, landings of refined links included.
 TEST(RefinedJet, keeps_mass_charge_and_volume) {
-  for (const auto remap : {RefinementRemap::conservative, RefinementRemap::paper}) {
+  for (const auto remap : {LinkRemap::conservative, LinkRemap::paper}) {
     Scene scene = refined_case(0.8 * cm, 3e-5, 1e-4);
     scene.config.refinement->remap = remap;
     RefinedRun run(scene);

@@ -11,16 +11,24 @@
 
 namespace ehdjet {
 
-/// What a solver promises about its result.
-///
-/// `tolerance` bounds the relative L2 error of the net force over all charges,
-///
-///     | F - F_direct |_2 / | F_direct |_2 ,
-///
-/// and is 0 for the direct sum, whose only error is round-off. The others stay well below it on jets; where
-/// the errors of all clusters add up with one sign, as on a ring, they may reach twice the tolerance.
+/// What a tolerance is relative to.
+enum class ToleranceNorm {
+  global,  ///< |dF|_2 <= tolerance |F|_2 over all charges
+  per_bead ///< |dF_i| <= tolerance sum_j |f_ij| for every charge
+};
+
+/// What a solver promises about its result: an error, in the norm, of at most `tolerance`. It is 0 for the
+/// direct sum, whose only error is round-off. The others stay well below it on jets; where the errors
+/// of all clusters add up with one sign, as on a ring, they may reach twice the tolerance.
 struct CoulombAccuracy {
   double tolerance = 0; ///< [-]
+  ToleranceNorm norm = ToleranceNorm::global;
+};
+
+/// What comparisons with the direct sum have found so far.
+struct CoulombChecks {
+  std::size_t number = 0, violations = 0; ///< of checks; of those above the tolerance
+  double last = 0, largest = 0;           ///< errors in the norm of the tolerance [-]
 };
 
 /// Sums the mutual Coulomb force of n point charges; how it does so is the subclass's business.
@@ -50,10 +58,8 @@ public:
   [[nodiscard]] virtual std::string description() const { return std::string(name()); }
   /// Makes the criterion that keeps the tolerance stricter, after a violation.
   virtual void tighten() {}
-  /// Relative L2 error at the last check against the direct sum; none if there are no checks.
-  [[nodiscard]] virtual std::optional<double> measured_error() const { return {}; }
-  /// Checks that found more than the tolerance.
-  [[nodiscard]] virtual std::size_t violations() const { return 0; }
+  /// None if nobody checks.
+  [[nodiscard]] virtual std::optional<CoulombChecks> checks() const { return {}; }
 };
 
 } // namespace ehdjet

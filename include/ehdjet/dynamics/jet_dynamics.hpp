@@ -48,8 +48,8 @@ public:
   [[nodiscard]] std::uint64_t evaluations() const { return evaluations_; }
   /// Pairs of beads at zero distance that were skipped so far, all evaluations together.
   [[nodiscard]] std::uint64_t coincident_pairs() const;
-  /// Relative error of the Coulomb force at its last check; none if there are no checks.
-  [[nodiscard]] std::optional<double> coulomb_error() const;
+  /// Comparisons of the Coulomb force with the direct sum; none if nobody checks.
+  [[nodiscard]] std::optional<CoulombChecks> coulomb_checks() const;
   [[nodiscard]] const std::vector<std::unique_ptr<ForceTerm>>& terms() const {
     return terms_;
   }

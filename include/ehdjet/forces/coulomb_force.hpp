@@ -22,8 +22,8 @@ public:
     return coincident_pairs_;
   }
   [[nodiscard]] std::string method() const override { return solver_->description(); }
-  [[nodiscard]] std::optional<double> measured_error() const override {
-    return solver_->measured_error();
+  [[nodiscard]] std::optional<CoulombChecks> checks() const override {
+    return solver_->checks();
   }
 
 private:

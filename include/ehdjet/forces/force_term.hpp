@@ -1,6 +1,7 @@
 #pragma once
 
 #include "ehdjet/core/columns.hpp"
+#include "ehdjet/coulomb/solver.hpp"
 #include "ehdjet/jet/stage.hpp"
 
 #include <cstdint>
@@ -25,8 +26,8 @@ public:
   [[nodiscard]] virtual std::uint64_t coincident_pairs() const { return 0; }
   /// How the term is computed, if there is something to tell.
   [[nodiscard]] virtual std::string method() const { return {}; }
-  /// Relative error at the last comparison with an exact method, if there are such.
-  [[nodiscard]] virtual std::optional<double> measured_error() const { return {}; }
+  /// Comparisons with an exact method, if there are such.
+  [[nodiscard]] virtual std::optional<CoulombChecks> checks() const { return {}; }
 };
 
 /// A force term with an internal variable per link, integrated with the jet.

@@ -55,7 +55,9 @@ struct RunStatistics {
   std::uint64_t rejected = 0;    ///< attempts
   std::uint64_t insertions = 0, releases = 0, landings = 0;
   std::optional<std::uint64_t> refinements; ///< none in a run that does not refine
-  std::optional<double> coulomb_error; ///< relative, at its last check, if there are checks
+  /// Of the Coulomb force at its last check, relative; none without checks.
+  std::optional<double> coulomb_error;
+  std::uint64_t coulomb_violations = 0; ///< checks that found more than the tolerance
   std::uint64_t coincident_pairs = 0; ///< pairs of beads at zero distance that were skipped
   double shortest_step = std::numeric_limits<double>::infinity(); ///< [s]
   double longest_step = 0;                                        ///< [s]

@@ -14,23 +14,19 @@ enum class LinkRemap {
   paper ///< radius by spline, V = pi a^2 l, one factor that keeps the sum of V; mass and
         ///< charge in proportion to V
 };
-/// How velocities do.
-enum class VelocityRemap {
-  spline,  ///< Akima
-  momentum ///< m v along the arc length: its sum is kept, kinetic energy can only fall
-};
-/// How stresses do.
-enum class StressRemap {
-  spline,      ///< Akima
-  conservative ///< V sigma along the arc length: its sum is kept, elastic energy can only fall
+/// How velocities and stresses do.
+enum class ColumnRemap {
+  spline, ///< Akima
+  conservative ///< m v and V sigma along the arc length: their sums are kept, the kinetic and the
+               ///< elastic energy can only fall
 };
 
 struct RefinementRule {
   MeshRule mesh;
   LinkRemap remap = LinkRemap::conservative;
   Spread spread = Spread::linear;
-  VelocityRemap velocity = VelocityRemap::spline;
-  StressRemap stress = StressRemap::spline;
+  ColumnRemap velocity = ColumnRemap::spline;
+  ColumnRemap stress = ColumnRemap::spline;
   /// Neighbouring links that are together no longer than this become one; absent: never [m].
   std::optional<double> coarsen;
   std::optional<double> collector; ///< h: new beads are not put beyond it [m]

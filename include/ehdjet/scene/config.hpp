@@ -1,6 +1,7 @@
 #pragma once
 
 #include "ehdjet/coulomb/solver_options.hpp"
+#include "ehdjet/refinement/refine_jet.hpp"
 
 #include <cstddef>
 #include <optional>
@@ -25,14 +26,6 @@ enum class SurfaceTensionForm { paper, line };
 enum class EventPlacement { located, step_end };
 /// Whether steps go on through landings while those are frequent (model 5).
 enum class LandingSteps { automatic, located };
-/// How volume, mass and charge get onto a refined mesh (model 7).
-enum class RefinementRemap { conservative, paper };
-/// What makes a refined mesh finer than elsewhere.
-enum class RefinementWeight { uniform, curvature, radius, stress };
-/// How the conservative remap spreads what a link carries along it.
-enum class RefinementSpread { linear, monotone_cubic };
-/// How velocities or stresses get onto a refined mesh.
-enum class ColumnRemap { spline, conservative };
 /// What is recorded of each refinement.
 enum class RefinementRecords { none, sums, energies };
 /// Norm over the components of the scaled error estimate.
@@ -117,11 +110,11 @@ struct VaricosityConfig {
 struct RefinementConfig {
   double length = 0;   ///< L~ [m]
   double interval = 0; ///< t_ref [s]
-  RefinementRemap remap = RefinementRemap::conservative;
-  std::optional<RefinementSpread> spread = {}; ///< conservative remap only; linear
+  LinkRemap remap = LinkRemap::conservative;
+  std::optional<Spread> spread = {}; ///< conservative remap only; linear
   ColumnRemap velocity = ColumnRemap::spline;
   ColumnRemap stress = ColumnRemap::spline;
-  RefinementWeight weight = RefinementWeight::uniform;
+  MeshWeight weight = MeshWeight::uniform;
   std::optional<double> weight_strength = {};        ///< weighted meshes only; 1 [-]
   std::optional<double> shortest = {}, longest = {}; ///< links of a weighted mesh [m]
   std::optional<double> coarsen = {}; ///< join links together shorter than this [m]

@@ -76,16 +76,15 @@ inline constexpr Choices<LandingSteps, 2> landing_steps{
 inline constexpr Choices<ErrorNorm, 2> error_norms{
     {{"max", ErrorNorm::max}, {"rms", ErrorNorm::rms}}};
 
-inline constexpr Choices<RefinementRemap, 2> refinement_remaps{
-    {{"conservative", RefinementRemap::conservative}, {"paper", RefinementRemap::paper}}};
-inline constexpr Choices<RefinementWeight, 4> refinement_weights{
-    {{"uniform", RefinementWeight::uniform},
-     {"curvature", RefinementWeight::curvature},
-     {"radius", RefinementWeight::radius},
-     {"stress", RefinementWeight::stress}}};
-inline constexpr Choices<RefinementSpread, 2> refinement_spreads{
-    {{"linear", RefinementSpread::linear},
-     {"monotone-cubic", RefinementSpread::monotone_cubic}}};
+inline constexpr Choices<LinkRemap, 2> refinement_remaps{
+    {{"conservative", LinkRemap::conservative}, {"paper", LinkRemap::paper}}};
+inline constexpr Choices<MeshWeight, 4> refinement_weights{
+    {{"uniform", MeshWeight::uniform},
+     {"curvature", MeshWeight::curvature},
+     {"radius", MeshWeight::radius},
+     {"stress", MeshWeight::stress}}};
+inline constexpr Choices<Spread, 2> refinement_spreads{
+    {{"linear", Spread::linear}, {"monotone-cubic", Spread::monotone_cubic}}};
 inline constexpr Choices<ColumnRemap, 2> column_remaps{
     {{"spline", ColumnRemap::spline}, {"conservative", ColumnRemap::conservative}}};
 inline constexpr Choices<RefinementRecords, 3> refinement_records{

@@ -77,6 +77,7 @@ private:
   std::unique_ptr<Integrator> integrator_;
   StepLimits limits_;
   StepSizeControl control_;
+  bool checks_coulomb_;
   std::vector<std::unique_ptr<Event>> events_;
   std::vector<std::unique_ptr<Observer>> observers_;
   StepHook hook_;
