@@ -102,24 +102,6 @@ TEST_P(FastSolvers, converge_with_the_order_at_a_fixed_opening) {
   EXPECT_LT(before, 1e-9);
 }
 
-// F = q^2/(4 R^2) sum 1/sin(pi k/n), the sum in long double.
-TEST_P(FastSolvers, keep_their_tolerance_on_a_ring_of_a_hundred_thousand) {
-  constexpr std::size_t n = 100'000;
-  long double sum = 0;
-  for (std::size_t k = 1; k < n; ++k)
-    sum += 1
-           / std::sin(std::numbers::pi_v<long double> * static_cast<long double>(k)
-                      / static_cast<long double>(n));
-  const Chain ring = helix(n, 1, 2 * pi / static_cast<double>(n), 0);
-  const double exact = constants::coulomb / 4 * static_cast<double>(sum);
-  const auto solver = make_coulomb_solver({.solver = GetParam(), .tolerance = 1e-5});
-  const Force force = force_on(ring, *solver);
-  double square = 0;
-  for (std::size_t i = 0; i < n; ++i)
-    square += (force[i] - exact * Vec3(ring.r()[i])).squaredNorm();
-  EXPECT_LE(std::sqrt(square / n) / exact, 2e-5); // errors of all pairs have the same sign
-}
-
 TEST_P(FastSolvers, handle_one_far_outlier_and_charges_in_one_place) {
   Chain c = whipping_jet(3000);
   c.set(1500, {1e6, -2e6, 5e5});

@@ -1,7 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
 #include <string>
 
 #include "support/refined.hpp"
@@ -15,16 +13,6 @@ Scene solved_by(Scene scene, const std::string& solver, double tolerance) {
   scene.config.coulomb->solver = solver;
   scene.config.coulomb->tolerance = tolerance;
   return scene;
-}
-
-double largest_distance(const JetState& a, const JetState& b) {
-  EXPECT_EQ(a.beads(), b.beads());
-  if (a.beads() != b.beads()) return std::nan("");
-  double largest = 0;
-  for (std::size_t k = 0; k < a.beads(); ++k)
-    largest =
-        std::max(largest, (a.columns().position()[k] - b.columns().position()[k]).norm());
-  return largest;
 }
 
 // What a solver's tolerance does to the jet, against what the integrator's does.
