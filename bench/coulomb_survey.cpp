@@ -1,5 +1,5 @@
-// Error against run time of the Coulomb solvers: number of charges, geometry, tolerance and threads, one CSV row
-// each. bench/plot_coulomb draws it.
+// Error against run time of the Coulomb solvers: number of charges, geometry, tolerance and
+// threads, one CSV row each. bench/plot_coulomb draws it.
 //
 //   build/release/bench/coulomb_survey [-o survey.csv] [--most 1000000] [--beads jet.csv] ...
 

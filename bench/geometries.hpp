@@ -83,7 +83,8 @@ inline Charges cube(std::size_t n) {
   return c;
 }
 
-/// The beads of a frame of a run (`ehdjet export --beads`), each link cut into equal pieces until there are
+/// The beads of a frame of a run (`ehdjet export --beads`), each link cut into equal pieces until
+/// there are
 /// about n: a real jet at any resolution. Charges go with the length of the pieces.
 inline Charges real_jet(const std::filesystem::path& beads, std::size_t n) {
   CsvTable table(beads, {"x_m", "y_m", "z_m", "charge_c", "embryo"}, {});

@@ -1,5 +1,5 @@
-// What one refinement costs: a coil whose links are cut in two. Run: build/release/bench/refinement_bench
-// The time per bead should not depend on the number of beads.
+// What one refinement costs: a coil whose links are cut in two. Run:
+// build/release/bench/refinement_bench The time per bead should not depend on the number of beads.
 
 #include "ehdjet/refinement/refine_jet.hpp"
 

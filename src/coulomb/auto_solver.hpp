@@ -7,8 +7,8 @@
 
 namespace ehdjet::detail {
 
-/// Picks the cheapest solver for each number of charges by a cost model, with hysteresis: a jet whose
-/// beads come and go around a crossover does not switch at each of them.
+/// Picks the cheapest solver for each number of charges by a cost model, with hysteresis: a jet
+/// whose beads come and go around a crossover does not switch at each of them.
 std::unique_ptr<CoulombSolver> make_auto_solver(const SolverOptions& options);
 
 } // namespace ehdjet::detail

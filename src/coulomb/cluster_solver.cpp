@@ -23,12 +23,13 @@ constexpr int scale_order = 4;
 constexpr std::size_t scale_groups = 16, charges_per_scale_group = 128;
 constexpr double scale_opening = 0.4;
 
-/// Errors of many pairs add up in a force: at random or, on a ring, all with the same sign. So each pair gets
-/// a share of the tolerance that falls with the number of pairs that act on a charge. On a curve the
-/// force of a cluster of size s on its neighbours goes with 1/s, so that under a bound for the error,
-/// (s/d)^(p+2)/s, clusters of half the size have their distance d/s, and with it their number, larger by
-/// 2^(1/(p+2)): a geometric series over the levels. With this factor the error stays below half the
-/// tolerance on jets and below twice the tolerance on a ring, from 1e3 to 1e6 charges.
+/// Errors of many pairs add up in a force: at random or, on a ring, all with the same sign. So
+/// each pair gets a share of the tolerance that falls with the number of pairs that act on a
+/// charge. On a curve the force of a cluster of size s on its neighbours goes with 1/s, so that
+/// under a bound for the error, (s/d)^(p+2)/s, clusters of half the size have their distance d/s,
+/// and with it their number, larger by 2^(1/(p+2)): a geometric series over the levels. With this
+/// factor the error stays below half the tolerance on jets and below twice the tolerance on a
+/// ring, from 1e3 to 1e6 charges.
 double margin_on_curves(std::size_t levels, int order) {
   const double ratio = std::exp2(1.0 / (order + 2));
   const double pairs = (std::pow(ratio, static_cast<double>(levels)) - 1) / (ratio - 1);
@@ -44,8 +45,8 @@ double power(double x, int n) {
   return result;
 }
 
-/// Bits of three numbers of 21 bits each, interleaved: neighbours in space are mostly neighbours in this
-/// order (Morton's).
+/// Bits of three numbers of 21 bits each, interleaved: neighbours in space are mostly neighbours
+/// in this order (Morton's).
 std::uint64_t interleaved(std::uint64_t x, std::uint64_t y, std::uint64_t z) {
   const auto spread = [](std::uint64_t v) {
     v = (v | v << 32U) & 0x1f00000000ffffU;
@@ -145,8 +146,8 @@ std::string ClusterSolver::description() const {
                      parameters_.order, parameters_.leaf);
 }
 
-/// Leaves of a curve are much smaller than those of charges that fill space with as many leaves; leaves of
-/// charges in no order are as large as everything.
+/// Leaves of a curve are much smaller than those of charges that fill space with as many leaves;
+/// leaves of charges in no order are as large as everything.
 bool ClusterSolver::is_ordered() const {
   const auto clusters = tree_.clusters();
   const auto leaves = tree_.leaves();

@@ -28,14 +28,15 @@ struct ClusterParameters {
   double opening = 0.75;
 };
 
-/// What treecode and fast multipole method share: the cluster tree, the multipoles of its clusters, and the
-/// scale that tells which error of a force is small.
+/// What treecode and fast multipole method share: the cluster tree, the multipoles of its
+/// clusters, and the scale that tells which error of a force is small.
 ///
-/// A pair of clusters is accepted if the error of its expansions, estimated from the tails of the series, is
-/// below the tolerance times the root mean square of the net force ("global") or times the forces of the
-/// pair itself ("per_bead"). On a smooth curve forces cancel (their sum of magnitudes is 10 to 1000 times
-/// the net force), which a criterion of angles alone would not see. The root mean square is estimated anew in
-/// each call, on sampled charges: a call depends on its arguments only.
+/// A pair of clusters is accepted if the error of its expansions, estimated from the tails of the
+/// series, is below the tolerance times the root mean square of the net force ("global") or times
+/// the forces of the pair itself ("per_bead"). On a smooth curve forces cancel (their sum of
+/// magnitudes is 10 to 1000 times the net force), which a criterion of angles alone would not see.
+/// The root mean square is estimated anew in each call, on sampled charges: a call depends on its
+/// arguments only.
 class ClusterSolver : public CoulombSolver {
 public:
   ClusterSolver(const Kernels& kernels, const ClusterParameters& parameters);
@@ -68,9 +69,9 @@ protected:
     return multipoles_.data() + set_ * cluster;
   }
 
-  /// Moves the expansions of the clusters of one level to their parents (upward), where they replace
-  /// what was there, or adds those of the parents to theirs. Every thread of the team; `level` is
-  /// the parents', `expansions` has one coefficient set per cluster.
+  /// Moves the expansions of the clusters of one level to their parents (upward), where they
+  /// replace what was there, or adds those of the parents to theirs. Every thread of the team;
+  /// `level` is the parents', `expansions` has one coefficient set per cluster.
   enum class Shift { upward, downward };
   void shift_level(std::size_t level, double* expansions, Shift direction);
 

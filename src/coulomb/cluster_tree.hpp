@@ -9,7 +9,8 @@
 
 namespace ehdjet::detail {
 
-/// Charges that follow each other, and the ball they are in. Lengths in units of 1/ExpansionKernel::unit.
+/// Charges that follow each other, and the ball they are in. Lengths in units of
+/// 1/ExpansionKernel::unit.
 struct Cluster {
   std::uint32_t begin = 0, end = 0; ///< charges; the end is a multiple of `padding`
   std::uint32_t child = 0;          ///< first of two that follow each other; 0: a leaf
@@ -21,8 +22,9 @@ struct Cluster {
   [[nodiscard]] bool is_leaf() const { return child == 0; }
 };
 
-/// Binary tree of ranges of charges: beads are sorted along the jet, so halving the index halves the
-/// jet, without a sort and without moving anything. The shape depends on the number of charges only.
+/// Binary tree of ranges of charges: beads are sorted along the jet, so halving the index halves
+/// the jet, without a sort and without moving anything. The shape depends on the number of charges
+/// only.
 class ClusterTree {
 public:
   /// `leaf`: charges per leaf, a multiple of `padding`. Allocates if n is larger than ever before.

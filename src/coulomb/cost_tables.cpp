@@ -5,8 +5,8 @@
 namespace ehdjet {
 namespace {
 
-/// What `ehdjet calibrate --threads 1 --simd LEVEL` has measured on an AMD EPYC of 2024 (Zen 5) [s].
-/// The direct sum costs the same at all tolerances.
+/// What `ehdjet calibrate --threads 1 --simd LEVEL` has measured on an AMD EPYC of 2024 (Zen 5)
+/// [s]. The direct sum costs the same at all tolerances.
 CostModel table(std::initializer_list<double> direct,
                 std::initializer_list<double> treecode, std::initializer_list<double> fmm) {
   CostModel m{.charges = {250, 500, 1000, 2000, 4000, 8000, 20000, 60000, 200000},

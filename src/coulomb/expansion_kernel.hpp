@@ -7,8 +7,8 @@
 
 namespace ehdjet::detail {
 
-/// The operators of a fast multipole method on coefficient sets (expansion_tables.hpp), compiled once
-/// per instruction set. Several clusters are worked on at once, one per vector lane.
+/// The operators of a fast multipole method on coefficient sets (expansion_tables.hpp), compiled
+/// once per instruction set. Several clusters are worked on at once, one per vector lane.
 ///
 /// Coordinates of expansions are those of the charge columns times `unit`, charges are theirs:
 /// nothing overflows whatever the user's units.

@@ -7,9 +7,9 @@
 // The expansion operators for any vector width, included by one source file per instruction set. As
 // in pair_tiles.hpp, all of it has internal linkage and uses no standard function.
 //
-// Operators along an arbitrary direction d turn the axes so that d becomes the z axis, where they are
-// sums over the degree only, O(p^3) in all: about z until x = 0, exchange x and z, about z until
-// y = 0, exchange x and z (Dehnen 2014).
+// Operators along an arbitrary direction d turn the axes so that d becomes the z axis, where they
+// are sums over the degree only, O(p^3) in all: about z until x = 0, exchange x and z, about z
+// until y = 0, exchange x and z (Dehnen 2014).
 namespace ehdjet::detail {
 namespace {
 
@@ -148,10 +148,14 @@ EHDJET_INLINE void scatter(int n, const VectorOf<Simd>* set, double* const* to) 
   }
 }
 
+/// Along z, at distance d:  L_k^m = (-1)^m/d^(k+1) sum_(l<p) (-1)^k/d^l u_kl^m M_l^m,  u the table
+/// `multipole_to_local`; the sign (-1)^k belongs to the first cluster's field on the second, and
+/// turns into (-1)^l for the second's on the first, which is seen along -z.
+///
 /// Multipoles up to degree p-1, local expansions up to p: a force takes a derivative of the local
-/// expansion, so that it is made of products of degrees up to p-1 of either side, the same on both.
-/// That makes the sum of the forces vanish; multipoles of degree p would spoil it and add nothing to
-/// the order of the force.
+/// expansion, so that it is made of products of degrees up to p-1 of either side, the same on
+/// both. That makes the sum of the forces vanish; multipoles of degree p would spoil it and add
+/// nothing to the order of the force.
 template <class Simd>
 void multipoles_to_locals(const ExpansionNumbers& t, const ExpansionKernel::Batch& batch) {
   using Vector = VectorOf<Simd>;
@@ -161,8 +165,8 @@ void multipoles_to_locals(const ExpansionNumbers& t, const ExpansionKernel::Batc
   const Alignment<Simd> axes(p, batch);
   axes.align(t, a, b);
 
-  // Scaled with the distance, so that no power of it overflows. The multipole of the second cluster is
-  // seen along -z.
+  // Scaled with the distance, so that no power of it overflows. The multipole of the second
+  // cluster is seen along -z.
   const Vector inverse = 1.0 / axes.length;
   Vector scale[highest_order + 1];
   scale[0] = broadcast<Vector>(1);

@@ -62,7 +62,8 @@ private:
     }
   }
 
-  // The top of the traversal, until there are enough pairs for all threads to be about equally busy.
+  // The top of the traversal, until there are enough pairs for all threads to be about equally
+  // busy.
   void share_out(std::size_t team) {
     constexpr std::size_t pairs_per_thread = 256;
     Lists& lists = lists_[0];
@@ -80,7 +81,8 @@ private:
     open(pair, lists, [&](const Pair& next) { visit(next, lists); });
   }
 
-  /// Lists a pair, or hands on the pairs that it is made of. The first cluster is not behind the second.
+  /// Lists a pair, or hands on the pairs that it is made of. The first cluster is not behind the
+  /// second.
   template <class Next>
   void open(const Pair& pair, Lists& lists, const Next& next) {
     const auto [a, b] = pair;
@@ -168,8 +170,8 @@ private:
 
   void act_near(std::size_t thread, std::size_t team) {
     const std::size_t total = sweeps_.empty() ? 0 : sweeps_.back().cost_so_far;
-    // Shares of equal cost. The sweeps of one leaf stay together: they report close pairs in the same
-    // places.
+    // Shares of equal cost. The sweeps of one leaf stay together: they report close pairs in the
+    // same places.
     const auto at_cost = [&](std::size_t cost) {
       auto s = std::ranges::lower_bound(sweeps_, cost, {}, &Sweep::cost_so_far);
       while (s != sweeps_.begin() && s != sweeps_.end()

@@ -135,7 +135,8 @@ struct Separations {
 };
 
 /// One tile: `Simd::targets` beads from i on, against `vectors` vectors of sources from j on.
-/// `diagonal`: the two ranges overlap. `mutual`: sources feel the targets, too. Returns whether a close pair may have been met.
+/// `diagonal`: the two ranges overlap. `mutual`: sources feel the targets, too. Returns whether a
+/// close pair may have been met.
 template <class Simd, int vectors, bool diagonal, bool mutual = true>
 EHDJET_INLINE bool add_tile(const ChargeColumns& c, FieldColumns g, std::size_t i,
                             std::size_t j, Targets<Simd>& target) {

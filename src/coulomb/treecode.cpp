@@ -5,8 +5,9 @@
 namespace ehdjet::detail {
 namespace {
 
-/// Barnes-Hut treecode with multipoles: each leaf's charges feel far clusters through their multipoles,
-/// directly, and near leaves charge by charge. No local expansions, no conflicts between threads.
+/// Barnes-Hut treecode with multipoles: each leaf's charges feel far clusters through their
+/// multipoles, directly, and near leaves charge by charge. No local expansions, no conflicts
+/// between threads.
 ///
 /// cost   : O(n log n); memory: one coefficient set and its gradient per cluster
 /// source : Barnes & Hut, Nature 324 (1986) 446

@@ -77,8 +77,7 @@ private:
 
   void append_radius(const ConstVec3View& r, const JetState& jet) {
     const auto radius = [&](std::size_t bead) {
-      const std::size_t upstream = bead == jet.first() ? 0 : bead - 1;
-      return link_radius(jet.volume[bead], (r[bead] - r[upstream]).norm());
+      return link_radius(jet.volume[bead], link_length(r, jet.first(), bead));
     };
     // Bead 0 has no link; it gets the radius of the first one, so that a drawn jet has a start.
     radius_.append(jet.first() < jet.beads() ? radius(jet.first()) : 0.);

@@ -50,7 +50,7 @@ private:
     length_.resize(beads);
     double total = 0;
     for (std::size_t k = first; k < beads; ++k) {
-      length_[k] = (r[k] - r[k == first ? 0 : k - 1]).norm();
+      length_[k] = link_length(r, first, k);
       total += length_[k];
     }
     std::size_t k = first;

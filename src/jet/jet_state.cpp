@@ -80,9 +80,11 @@ Bead bead_at(const JetState& jet, std::size_t bead) {
 
 double link_length(const JetState& jet, std::size_t bead) {
   EHDJET_EXPECTS(bead >= 1 && bead < jet.beads());
-  const auto r = jet.columns().position();
-  const std::size_t upstream = bead <= jet.first() ? 0 : bead - 1;
-  return (r[bead] - r[upstream]).norm();
+  return link_length(jet.columns().position(), jet.first(), bead);
+}
+
+double link_length(ConstVec3View r, std::size_t first, std::size_t bead) {
+  return (r[bead] - r[bead <= first ? 0 : bead - 1]).norm();
 }
 
 double link_radius(double volume, double length) {

@@ -20,8 +20,9 @@ struct Ring {
 
 class LargeRings : public testing::TestWithParam<Ring> {};
 
-/// F = q^2/(4 R^2) sum 1/sin(pi k/n), the sum in long double. Rounded coordinates alone change the force,
-/// a hundred-thousandth of what neighbours do to each other, by 3e-6 of itself at a million.
+/// F = q^2/(4 R^2) sum 1/sin(pi k/n), the sum in long double. Rounded coordinates alone change the
+/// force, a hundred-thousandth of what neighbours do to each other, by 3e-6 of itself at a
+/// million.
 TEST_P(LargeRings, are_pushed_outwards_by_the_cosecant_sum) {
   const auto [name, n, tolerance] = GetParam();
   long double sum = 0;

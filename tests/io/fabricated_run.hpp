@@ -65,7 +65,8 @@ void write_run(const std::filesystem::path& path, std::size_t frames,
 /// Bead k of the deposit of a fabricated run.
 DepositedBead fabricated_deposit(std::uint64_t k);
 
-/// Holds at least `flushed` frames, rows and deposited beads of a fabricated run, each of them whole.
+/// Holds at least `flushed` frames, rows and deposited beads of a fabricated run, each of them
+/// whole.
 void expect_intact(const RunReader& run, std::uint64_t flushed);
 
 inline std::string text_of(const std::filesystem::path& path) {

@@ -155,8 +155,8 @@ TEST(Refinement, the_papers_radii_stay_between_those_of_their_neighbours) {
   EXPECT_NEAR(most, 1, 0.2) << "a factor of order one";
 }
 
-// Validation 6.3: the volume that the paper's radii would make from nothing, relative to the jet's. The
-// last radius is an old one and tells the factor by which all volumes are scaled.
+// Validation 6.3: the volume that the paper's radii would make from nothing, relative to the
+// jet's. The last radius is an old one and tells the factor by which all volumes are scaled.
 TEST(Refinement, the_papers_factor_takes_back_the_volume_that_its_radii_make) {
   for (const auto& [length, made] :
        {std::pair{0.2, 2.866e-2}, {0.4, 2.041e-2}, {0.8, 1.265e-2}}) {

@@ -58,8 +58,8 @@ TEST(CaseOne, tip_path_and_bead_count_are_those_of_the_reference_every_milliseco
   EXPECT_LE(worst[3], 1e-5); // printed with six digits
 }
 
-// What a tolerance costs. Without aiming steps at events and a good guess of the step after them the
-// run needs 27,400 evaluations.
+// What a tolerance costs. Without aiming steps at events and a good guess of the step after them
+// the run needs 27,400 evaluations.
 TEST(CaseOne, costs_no_more_evaluations_than_it_should) {
   const auto simulation = run(case_one("dormand-prince", 1e-6), 20e-3);
   const RunStatistics& n = simulation->statistics();

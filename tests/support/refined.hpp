@@ -66,7 +66,7 @@ inline double resolving_power(const JetState& jet, ConstVec3View r, double lambd
   std::vector<double> length(jet.beads(), 0.0);
   double total = 0;
   for (std::size_t k = first; k < jet.beads(); ++k)
-    total += length[k] = (r[k] - r[k == first ? 0 : k - 1]).norm();
+    total += length[k] = link_length(r, first, k);
   std::size_t k = first;
   double end = length[first];
   while (k + 1 < jet.beads() && end < lambda * total) end += length[++k];

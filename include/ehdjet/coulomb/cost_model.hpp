@@ -28,8 +28,8 @@ struct CostModel {
   /// Number of charges from which on the direct sum is not the cheapest any more.
   [[nodiscard]] std::size_t crossover(double tolerance) const;
 
-  /// Constants that come with the program, per instruction set: the same everywhere, so that a scene
-  /// has the same bits wherever the kernels have them. `ehdjet calibrate` measures others.
+  /// Constants that come with the program, per instruction set: the same everywhere, so that a
+  /// scene has the same bits wherever the kernels have them. `ehdjet calibrate` measures others.
   static const CostModel& shipped(SimdLevel level = best_simd_level());
   /// Times all priced solvers on this machine, with the present number of threads: half a minute.
   static CostModel measured(SimdLevel level = best_simd_level());

@@ -17,9 +17,10 @@ enum class ToleranceNorm {
   per_bead ///< |dF_i| <= tolerance sum_j |f_ij| for every charge
 };
 
-/// What a solver promises about its result: an error, in the norm, of at most `tolerance`. It is 0 for the
-/// direct sum, whose only error is round-off. The others stay well below it on jets; where the errors
-/// of all clusters add up with one sign, as on a ring, they may reach twice the tolerance.
+/// What a solver promises about its result: an error, in the norm, of at most `tolerance`. It is 0
+/// for the direct sum, whose only error is round-off. The others stay well below it on jets; where
+/// the errors of all clusters add up with one sign, as on a ring, they may reach twice the
+/// tolerance.
 struct CoulombAccuracy {
   double tolerance = 0; ///< [-]
   ToleranceNorm norm = ToleranceNorm::global;

@@ -13,10 +13,10 @@ namespace ehdjet {
 /// chain as soon as its upstream neighbour has landed too; until then its link still pulls with
 /// its last stress. An interior bead that lands first freezes and waits (model 5).
 ///
-/// A landing ends the step, unless beads land every few steps. Then they pass the collector
-/// during a step, in which they count as resting where they crossed (JetState::absorbing_plane); time,
-/// place, velocity and stress of each landing are read off the dense output, and the chain
-/// changes at the end of the step. What that does to the motion is part of the error estimate.
+/// A landing ends the step, unless beads land every few steps. Then they pass the collector during
+/// a step, in which they count as resting where they crossed (JetState::absorbing_plane); time,
+/// place, velocity and stress of each landing are read off the dense output, and the chain changes
+/// at the end of the step. What that does to the motion is part of the error estimate.
 class Landing final : public Event {
 public:
   /// `collector_distance`: h [m]; `first_bead`: 1 behind a nozzle, 0 for a chain whose bead 0 is

@@ -62,6 +62,8 @@ void remove_leading_bead(JetState& jet);
 
 /// l_k = |r_k - r_(k-1)|, where the upstream neighbour of the bead behind an embryo is bead 0 [m].
 [[nodiscard]] double link_length(const JetState& jet, std::size_t bead);
+/// The same, of other positions of that chain.
+[[nodiscard]] double link_length(ConstVec3View r, std::size_t first, std::size_t bead);
 
 /// a_k = sqrt(V_k / (pi l_k))                                            (model 1) [m]
 [[nodiscard]] double link_radius(double volume, double length);

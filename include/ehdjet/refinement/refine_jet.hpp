@@ -55,9 +55,9 @@ struct MeshChange {
 /// longer, it may add a few beads once more.
 std::optional<MeshChange> refine_jet(JetState& jet, const RefinementRule& rule);
 
-/// Joins neighbouring links that are together no longer than `rule.coarsen` (model 7): volume, mass,
-/// charge, momentum and V sigma are kept. The insertion zone and a landed bead are left alone.
-/// Nothing if there are no such links.
+/// Joins neighbouring links that are together no longer than `rule.coarsen` (model 7): volume,
+/// mass, charge, momentum and V sigma are kept. The insertion zone and a landed bead are left
+/// alone. Nothing if there are no such links.
 std::optional<MeshChange> coarsen_jet(JetState& jet, const RefinementRule& rule);
 
 } // namespace ehdjet
