@@ -1,6 +1,6 @@
 #include "cross_checks.hpp"
 
-#include "ehdjet/integrators/butcher_tableau.hpp"
+#include "ehdjet/integrators/make_integrator.hpp"
 #include "ehdjet/scene/schema.hpp"
 
 #include <algorithm>
@@ -63,7 +63,8 @@ void check_field(const SceneConfig& c, const SceneText& text) {
 }
 
 void settle_step(IntegratorConfig& i, const SceneText& text) {
-  const bool has_error_estimate = butcher_tableau(i.method).error_order > 0;
+  const IntegratorDescription& method = integration_method(i.method);
+  const bool has_error_estimate = method.estimates_errors;
   const std::string method_is = fmt::format("integrator.method = \"{}\"", i.method);
   if (i.rtol && i.step)
     text.fail(
@@ -71,11 +72,17 @@ void settle_step(IntegratorConfig& i, const SceneText& text) {
         fmt::format("integrator.rtol = {} and integrator.step = {} s: the step is adaptive "
                     "or fixed. Remove one",
                     *i.rtol, *i.step));
+  if (i.step && method.kind == MethodKind::chooses)
+    text.fail("integrator.step",
+              fmt::format("integrator.step = {} s and {}: a choice of method goes by the "
+                          "steps that a tolerance allows. Name a method, or give "
+                          "integrator.rtol instead",
+                          *i.step, method_is));
   if (i.rtol && !has_error_estimate)
     text.fail(
         "integrator.rtol",
         fmt::format("integrator.rtol = {} and {}: this method has no error estimate. Give "
-                    "integrator.step, or take \"dormand-prince\" or \"dop853\"",
+                    "integrator.step, or leave the method to \"auto\"",
                     *i.rtol, method_is));
   if (!i.rtol && !i.step) {
     if (!has_error_estimate)

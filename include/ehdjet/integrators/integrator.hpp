@@ -25,8 +25,10 @@ public:
   virtual ~Integrator() = default;
 
   [[nodiscard]] virtual std::string_view name() const = 0;
+  /// Of the last attempt, where the integrator chooses among methods; else its name.
+  [[nodiscard]] virtual std::string_view method_in_use() const { return name(); }
   [[nodiscard]] virtual int order() const = 0;
-  /// The error estimate falls with h to this power; 0 if the method has none.
+  /// The last attempt's error estimate falls with h to this power; 0 if there is none.
   [[nodiscard]] virtual int error_order() const = 0;
 
   /// Tries y(t) -> y(t + h). `y` must stay where it is until the step is committed.
@@ -42,6 +44,10 @@ public:
   /// Components [first, first + out.size()) at t + theta h, 0 <= theta <= 1.
   virtual void dense_output(double theta, std::size_t first,
                             std::span<double> out) const = 0;
+
+  /// False: a state inside a step serves to look at, but to go on from it the step is to be
+  /// attempted again with its length.
+  [[nodiscard]] virtual bool interpolates_as_accurately_as_it_steps() const { return true; }
 
   /// Makes the end of the last attempt the state: swaps it into `y`.
   virtual void commit(std::vector<double>& y) = 0;
