@@ -133,9 +133,8 @@ void JetDynamics::add_time_derivative(double factor, std::span<double> out) cons
   const JetColumns<double> rates{out, mass_.size()};
   rates.velocity().add(k, factor * inverse_mass_[k] * (links.pull_lower[k] * velocity));
   if (rates.has_stress())
-    rates.stress()[k] -= factor
-                         * (links.stretching[k].dot(acceleration)
-                            + links.turning[k].dot(velocity));
+    rates.stress()[k] -=
+        factor * (links.stretching[k].dot(acceleration) + links.turning[k].dot(velocity));
 }
 
 // Neighbours in opposite phase: s^2 + s/tau + omega^2 = 0 with elasticity, s^2 + omega^2 = 0 without.

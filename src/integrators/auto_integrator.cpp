@@ -22,9 +22,9 @@ double least_stable_radius(const ButcherTableau& method) {
   double least = std::numeric_limits<double>::infinity();
   for (int i = 0; i <= directions; ++i)
     least = std::min(
-        least, longest_stable_step(
-                   method, {-std::sin(0.5 * std::numbers::pi * i / directions),
-                            std::cos(0.5 * std::numbers::pi * i / directions)}));
+        least,
+        longest_stable_step(method, {-std::sin(0.5 * std::numbers::pi * i / directions),
+                                     std::cos(0.5 * std::numbers::pi * i / directions)}));
   return least;
 }
 

@@ -7,7 +7,8 @@ namespace {
 
 const RosenbrockTableau ros34pw2{
     .name = "ros34pw2",
-    .description = "Rosenbrock-W of order 3(2), L-stable (Rang & Angermann, BIT 45 (2005) 761)",
+    .description =
+        "Rosenbrock-W of order 3(2), L-stable (Rang & Angermann, BIT 45 (2005) 761)",
     .order = 3,
     .error_order = 3,
     .gamma = 4.3586652150845900e-1,

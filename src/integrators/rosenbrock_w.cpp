@@ -98,7 +98,6 @@ StepOutcome RosenbrockW::attempt(OdeSystem& system, double t, double h,
   combine(y.data(), end, y1_.data(), n);
   std::ranges::fill(error_, 0.0);
   combine(error_.data(), difference, error_.data(), n);
-  stiff->solve(error_);
   return {scale_.norm(error_, y0_, y1_)};
 }
 
@@ -124,7 +123,8 @@ void RosenbrockW::commit(std::vector<double>& y) {
 double RosenbrockW::initial_step(OdeSystem& system, double t, std::span<double> y) {
   resize(y.size());
   prepare_start(system, t, y);
-  const double rate = scale_.norm(start_rate_, y, y) * scale_.rtol; // relative change per second
+  const double rate =
+      scale_.norm(start_rate_, y, y) * scale_.rtol; // relative change per second
   return rate > 0 ? 0.01 / rate : 0;
 }
 

@@ -30,7 +30,8 @@ double longest_stable_step(const ButcherTableau& method, std::complex<double> s)
     const double round_off = 1e-12; // near 0 on the imaginary axis |R| = 1 to higher order
     return std::abs(amplification(method, r * direction)) <= 1 + round_off;
   };
-  constexpr double stride = 0.05, farthest = 100; // no explicit method of s stages reaches 2 s^2
+  constexpr double stride = 0.05,
+                   farthest = 100; // no explicit method of s stages reaches 2 s^2
   double inside = 0, outside = stride;
   while (outside < farthest && stable(outside)) inside = outside, outside += stride;
   for (int i = 0; i < 60; ++i) {

@@ -27,7 +27,8 @@ inline bool is_finite(std::span<const double> y) {
 }
 
 /// out = base + sum_j w_j v_j, two vectors a pass so that memory is not read once per vector.
-inline void combine(const double* base, const WeightedVectors& sum, double* out, std::size_t n) {
+inline void combine(const double* base, const WeightedVectors& sum, double* out,
+                    std::size_t n) {
   std::size_t j = 0;
   const double* from = base;
   if (sum.count == 0 && out != base) std::copy_n(base, n, out);

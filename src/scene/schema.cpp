@@ -20,7 +20,8 @@ std::string Range::text() const {
 
 Words integration_method_names() {
   Words words;
-  for (const IntegratorDescription& m : integration_methods()) words.names.push_back(m.name);
+  for (const IntegratorDescription& m : integration_methods())
+    words.names.push_back(m.name);
   return words;
 }
 

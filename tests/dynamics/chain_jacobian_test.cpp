@@ -1,5 +1,4 @@
 #include "ehdjet/dynamics/jet_dynamics.hpp"
-
 #include "ehdjet/forces/maxwell.hpp"
 #include "ehdjet/forces/surface_tension.hpp"
 
@@ -36,7 +35,8 @@ struct BentJet {
 };
 
 /// One number for each entry of the state: whether f or J may depend on it.
-std::vector<bool> moving_entries(const JetState& jet, const std::vector<std::size_t>& held) {
+std::vector<bool> moving_entries(const JetState& jet,
+                                 const std::vector<std::size_t>& held) {
   std::vector<bool> moves(jet.y.size(), true);
   for (const std::size_t k : held)
     for (std::size_t c = 0; c < jet.y.size() / jet.beads(); ++c)
@@ -94,10 +94,8 @@ void expect_same(JetDynamics& dynamics, const JetState& jet,
   }
 }
 
-constexpr Nozzle turning{.fluid_velocity = 0.7,
-                         .amplitude = 0.5,
-                         .angular_frequency = 2,
-                         .phase = 0.4};
+constexpr Nozzle turning{
+    .fluid_velocity = 0.7, .amplitude = 0.5, .angular_frequency = 2, .phase = 0.4};
 
 TEST(ChainJacobian, is_what_the_local_forces_answer) {
   for (const std::size_t n : {2U, 3U, 7U}) {

@@ -31,8 +31,7 @@ JetState after_fixed_steps(Scene scene, const std::string& method, double step) 
 double distance(const JetState& jet, const JetState& exact) {
   double squares = 0;
   for (std::size_t k = 0; k < jet.beads(); ++k)
-    squares +=
-        (jet.columns().position()[k] - exact.columns().position()[k]).squaredNorm();
+    squares += (jet.columns().position()[k] - exact.columns().position()[k]).squaredNorm();
   return std::sqrt(squares) / pvp::link_length;
 }
 
@@ -45,9 +44,9 @@ std::ostream& operator<<(std::ostream& os, const Fluid& f) {
   return os << f.name;
 }
 constexpr Fluid pvp_fluid{"pvp", 5e3, 2, 2.5e-7};
-constexpr Fluid newtonian{"newtonian", 1e9, 2, 4e-9};  // relaxes in 2 ns
-constexpr Fluid thin{"thin", 5e4, 1e-3, 4e-8};         // and in 20 ns
-constexpr Fluid solid{"solid", 1e9, 1e4, 2e-8};        // rings at 1.1e7 1/s
+constexpr Fluid newtonian{"newtonian", 1e9, 2, 4e-9}; // relaxes in 2 ns
+constexpr Fluid thin{"thin", 5e4, 1e-3, 4e-8};        // and in 20 ns
+constexpr Fluid solid{"solid", 1e9, 1e4, 2e-8};       // rings at 1.1e7 1/s
 
 JetState exact_motion(const Fluid& f) {
   return after_fixed_steps(chain_of(f.modulus, f.viscosity), "dormand-prince",
@@ -62,10 +61,11 @@ struct Published {
 // Computed independently: another implementation, whose Jacobian are differences of the right-hand
 // side without Coulomb force.
 TEST(StiffChain, errors_of_ros34pw2_are_those_found_elsewhere) {
-  const Published rows[] = {
-      {pvp_fluid, 1e-5, 1.20e-3}, {pvp_fluid, 2.5e-6, 2.28e-5}, {newtonian, 1e-5, 7.03e-4},
-      {newtonian, 1.25e-6, 1.63e-6}, {thin, 1e-5, 1.21e-3}, {thin, 1.25e-6, 2.94e-6},
-      {solid, 1e-5, 1.2e-3}, {solid, 5e-6, 6.6e-5}, {solid, 1.25e-6, 2.0e-5}};
+  const Published rows[] = {{pvp_fluid, 1e-5, 1.20e-3}, {pvp_fluid, 2.5e-6, 2.28e-5},
+                            {newtonian, 1e-5, 7.03e-4}, {newtonian, 1.25e-6, 1.63e-6},
+                            {thin, 1e-5, 1.21e-3},      {thin, 1.25e-6, 2.94e-6},
+                            {solid, 1e-5, 1.2e-3},      {solid, 5e-6, 6.6e-5},
+                            {solid, 1.25e-6, 2.0e-5}};
   for (const auto& [fluid, step, error] : rows) {
     const Scene scene = chain_of(fluid.modulus, fluid.viscosity);
     EXPECT_NEAR(distance(after_fixed_steps(scene, "ros34pw2", step), exact_motion(fluid))
@@ -116,8 +116,8 @@ TEST(StiffChain, becomes_newtonian_as_relaxation_becomes_instant) {
 // left is the motion they ride on.
 TEST(StiffChain, a_solid_filament_is_stable_at_forty_times_the_explicit_limit) {
   const JetState exact = exact_motion(solid);
-  const JetState jet = after_fixed_steps(chain_of(solid.modulus, solid.viscosity),
-                                         "ros34pw2", 5e-6);
+  const JetState jet =
+      after_fixed_steps(chain_of(solid.modulus, solid.viscosity), "ros34pw2", 5e-6);
   EXPECT_LE(distance(jet, exact), 1e-4);
   double difference = 0, strongest = 0;
   for (std::size_t k = 1; k < jet.beads(); ++k) {

@@ -53,7 +53,9 @@ public:
   [[nodiscard]] Rates squared_rates(std::span<const double> inverse_mass) const;
 
 private:
-  [[nodiscard]] std::size_t upstream(std::size_t k) const { return k == first_ ? 0 : k - 1; }
+  [[nodiscard]] std::size_t upstream(std::size_t k) const {
+    return k == first_ ? 0 : k - 1;
+  }
 
   LinkDerivatives links_;
   std::vector<char> held_;
@@ -62,9 +64,10 @@ private:
   // Of the last factorization.
   double eta_ = 0;
   std::span<const double> mass_;
-  std::vector<Vec3> response_;         // p
-  std::vector<double> damping_;        // 1/(1 + eta/tau)
-  std::vector<Mat3> lower_, eliminated_; // A at the lower end; inverse pivot times A at the upper
+  std::vector<Vec3> response_;  // p
+  std::vector<double> damping_; // 1/(1 + eta/tau)
+  std::vector<Mat3> lower_,
+      eliminated_; // A at the lower end; inverse pivot times A at the upper
   std::vector<Eigen::PartialPivLU<Mat3>> pivot_;
 };
 

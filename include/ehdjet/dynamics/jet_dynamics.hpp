@@ -104,7 +104,7 @@ private:
   std::optional<double> absorbing_plane_; // [m]
   std::vector<Passed> passed_;            // in the present evaluation, from the end on
   std::uint64_t evaluations_ = 0;
-  ChainJacobian jacobian_; // of the last linearization; empty as long as there was none
+  ChainJacobian jacobian_;   // of the last linearization; empty as long as there was none
   double linearized_at_ = 0; // [s]
 };
 

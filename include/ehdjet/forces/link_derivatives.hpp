@@ -2,6 +2,7 @@
 
 #include "ehdjet/core/columns.hpp"
 
+#include <algorithm>
 #include <cstddef>
 #include <vector>
 
@@ -24,9 +25,14 @@ struct LinkDerivatives {
   std::vector<double> relaxation; ///< 1/tau
 
   void reset(std::size_t beads) {
-    pull_upper.assign(beads, Mat3::Zero()), pull_lower.assign(beads, Mat3::Zero());
-    for (auto* v : {&tension, &stretching, &turning}) v->assign(beads, Vec3::Zero());
-    relaxation.assign(beads, 0.0);
+    const auto clear = [beads](auto& column, const auto& zero) {
+      column.resize(beads); // unlike assign it makes room for more to come
+      std::fill(column.begin(), column.end(), zero);
+    };
+    for (auto* column : {&pull_upper, &pull_lower}) clear(*column, Mat3(Mat3::Zero()));
+    for (auto* column : {&tension, &stretching, &turning})
+      clear(*column, Vec3(Vec3::Zero()));
+    clear(relaxation, 0.0);
   }
   /// A tension pulls both ends of its link alike.
   void add_pull(std::size_t k, const Mat3& pull) {

@@ -11,12 +11,12 @@ namespace ehdjet {
 
 /// Rosenbrock-W methods: steps are not limited by the rates in the system's stiff part.
 ///
-/// cost   : s evaluations, s + 1 linear solutions, one linearization and one factorization a
-///          step; an attempt repeated with another h saves an evaluation and the linearization
+/// cost   : s evaluations, s linear solutions, one linearization and one factorization a step;
+///          an attempt repeated with another h saves an evaluation and the linearization
 /// dense  : weights b_i(theta) of the stages that are already there. Second order, so that a state
 ///          inside a step is less accurate than its end, where b_i(1) = b_i
-/// error  : the difference to the embedded solution, through (I - gamma h J)^-1: without that the
-///          components that have died out rule the step
+/// order  : kept for any J; in the limit of instant relaxation second order where the stiff
+///          components follow something that is prescribed, or start far from their equilibrium
 /// source : Hairer & Wanner, Solving Ordinary Differential Equations II, 2nd ed. (1996), IV.7
 class RosenbrockW final : public Integrator {
 public:
@@ -44,8 +44,9 @@ private:
 
   const RosenbrockTableau* method_;
   ErrorScale scale_;
-  std::vector<double> alpha_, gamma_;        // row sums
-  std::vector<std::array<double, 3>> dense_; // of b_i: coefficients of theta, theta^2, theta^3
+  std::vector<double> alpha_, gamma_; // row sums
+  std::vector<std::array<double, 3>>
+      dense_; // of b_i: coefficients of theta, theta^2, theta^3
 
   std::vector<std::vector<double>> k_;
   std::vector<double> start_rate_, stage_, y1_, error_;
