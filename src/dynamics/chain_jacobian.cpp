@@ -34,8 +34,8 @@ void ChainJacobian::factorize(double eta, std::span<const double> mass) {
   const auto at_lower_end = [&](std::size_t k) -> Mat3 {
     return eta * (eta * l.pull_lower[k] + l.tension[k] * response_[k].transpose());
   };
-  // What bead k and everything above it weighs upon link k + 1. Written as a product: the difference
-  // of two stiffnesses would lose the masses that it is about.
+  // What bead k and everything above it weighs upon link k + 1. Written as a product: the
+  // difference of two stiffnesses would lose the masses that it is about.
   Mat3 weight = Mat3::Zero();
   for (std::size_t k = 0; k < n; ++k) {
     lower_[k].setZero();

@@ -137,7 +137,8 @@ void JetDynamics::add_time_derivative(double factor, std::span<double> out) cons
         factor * (links.stretching[k].dot(acceleration) + links.turning[k].dot(velocity));
 }
 
-// Neighbours in opposite phase: s^2 + s/tau + omega^2 = 0 with elasticity, s^2 + omega^2 = 0 without.
+// Neighbours in opposite phase: s^2 + s/tau + omega^2 = 0 with elasticity, s^2 + omega^2 = 0
+// without.
 StiffPart::Modes JetDynamics::fastest_modes() const {
   const auto [elastic, tension] = jacobian_.squared_rates(inverse_mass_);
   double relaxation = 0;

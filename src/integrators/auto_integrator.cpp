@@ -87,12 +87,10 @@ StepOutcome AutoIntegrator::attempt(OdeSystem& system, double t, double h,
   } else if (new_step_) {
     reconsider(system, t, y);
   }
-  if (new_step_) accepted_ = 0;
   new_step_ = false;
   const StepOutcome outcome = active_->attempt(system, t, h, y);
-  // A step that is taken again as far as an event is shorter than it had to be.
   if (outcome.error <= 1)
-    accepted_ = std::max(accepted_, h);
+    accepted_ = h;
   else
     rejected_ = true;
   return outcome;

@@ -219,13 +219,11 @@ void Simulation::show_until(const DenseStep& step, double end) {
   }
 }
 
-// Within an error tolerance the dense output serves, if it is as good as the method. Fixed steps are
-// for convergence studies: there the state at the event is always a step of the method itself,
-// so that interpolation does not blur the order.
+// Within an error tolerance the dense output serves. Fixed steps are for convergence studies: there
+// the state at the event is a step of the method itself, so that interpolation does not blur
+// the order.
 void Simulation::stop_at(const DenseStep& step, double theta) {
-  const bool again =
-      limits_.fixed || !integrator_->interpolates_as_accurately_as_it_steps();
-  if (again && theta > 0) {
+  if (limits_.fixed && theta > 0) {
     integrator_->attempt(*dynamics_, step.t0, theta * step.h, jet_.y);
     integrator_->commit(jet_.y);
   } else {

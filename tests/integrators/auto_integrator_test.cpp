@@ -107,7 +107,6 @@ TEST(AutoIntegrator, reports_the_order_of_the_method_in_use) {
   EXPECT_EQ(chooses.name(), "auto");
   EXPECT_EQ(chooses.method_in_use(), "ros34pw2");
   EXPECT_EQ(chooses.error_order(), 3);
-  EXPECT_FALSE(chooses.interpolates_as_accurately_as_it_steps());
 }
 
 } // namespace

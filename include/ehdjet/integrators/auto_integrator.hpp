@@ -10,9 +10,9 @@ namespace ehdjet {
 /// Dormand & Prince's explicit pair while accuracy limits the step, ROS34PW2 while stability would.
 ///
 /// The explicit method is left when it steps more than 0.7 of its stability limit, the implicit one
-/// when it steps less than a quarter of it, three looks in a row. The limit is that of the fastest modes of
-/// the system's stiff part. A look costs one linearization; there is one every eight steps,
-/// and after a rejection. Nothing else differs from the explicit method alone: as long as it is
+/// when it steps less than a quarter of it, three looks in a row. The limit is that of the fastest
+/// modes of the system's stiff part. A look costs one linearization; there is one every eight
+/// steps, and after a rejection. Nothing else differs from the explicit method alone: as long as it is
 /// not left, every bit is the same.
 class AutoIntegrator final : public Integrator {
 public:
@@ -35,9 +35,6 @@ public:
   }
   void dense_output(double theta, std::size_t first, std::span<double> out) const override {
     active_->dense_output(theta, first, out);
-  }
-  [[nodiscard]] bool interpolates_as_accurately_as_it_steps() const override {
-    return active_->interpolates_as_accurately_as_it_steps();
   }
   void commit(std::vector<double>& y) override;
   void restart() override;

@@ -45,10 +45,6 @@ public:
   virtual void dense_output(double theta, std::size_t first,
                             std::span<double> out) const = 0;
 
-  /// False: a state inside a step serves to look at, but to go on from it the step is to be
-  /// attempted again with its length.
-  [[nodiscard]] virtual bool interpolates_as_accurately_as_it_steps() const { return true; }
-
   /// Makes the end of the last attempt the state: swaps it into `y`.
   virtual void commit(std::vector<double>& y) = 0;
   /// Forget what is known about f(t, y). Call after anything but `commit` has changed y.

@@ -13,8 +13,8 @@ namespace ehdjet {
 ///
 /// cost   : s evaluations, s linear solutions, one linearization and one factorization a step;
 ///          an attempt repeated with another h saves an evaluation and the linearization
-/// dense  : weights b_i(theta) of the stages that are already there. Second order, so that a state
-///          inside a step is less accurate than its end, where b_i(1) = b_i
+/// dense  : weights b_i(theta) of the stages that are already there; a local error O(h^3), as the
+///          error estimate has, so that a state inside a step keeps the tolerance
 /// order  : kept for any J; in the limit of instant relaxation second order where the stiff
 ///          components follow something that is prescribed, or start far from their equilibrium
 /// source : Hairer & Wanner, Solving Ordinary Differential Equations II, 2nd ed. (1996), IV.7
@@ -31,9 +31,6 @@ public:
   [[nodiscard]] std::size_t worst_component() const override;
   void prepare_dense_output(OdeSystem& /*system*/) override {}
   void dense_output(double theta, std::size_t first, std::span<double> out) const override;
-  [[nodiscard]] bool interpolates_as_accurately_as_it_steps() const override {
-    return false;
-  }
   void commit(std::vector<double>& y) override;
   void restart() override { start_known_ = false; }
   double initial_step(OdeSystem& system, double t, std::span<double> y) override;
