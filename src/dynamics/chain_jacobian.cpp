@@ -42,8 +42,7 @@ void ChainJacobian::factorize(double eta, std::span<const double> mass) {
     const bool held = held_[k] != 0;
     if (k >= first_ && !held) {
       lower_[k] = at_lower_end(k);
-      const bool grounded = held_[upstream(k)] != 0;
-      weight = grounded ? lower_[k] : Mat3(lower_[k] * pivot_[k - 1].solve(weight));
+      weight = lower_[k] * pivot_[k - 1].solve(weight);
     } else {
       weight.setZero();
     }

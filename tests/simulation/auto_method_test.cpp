@@ -107,8 +107,8 @@ TEST(StiffJet, converges_at_third_order_though_its_nozzle_moves) {
   EXPECT_NEAR(order_of_stiff_jet(5e-5, 1e5, 2), 3, 0.2);
 }
 
-// An insertion changes no stress. A release halves the length of a link that keeps its stress, which
-// a stiff fluid forgets at once, and within the step that sees this one order is lost.
+// An insertion changes no stress. A release halves the length of a link that keeps its stress,
+// which a stiff fluid forgets at once; within the step that sees this one order is lost.
 TEST(StiffJet, converges_across_insertions_and_releases) {
   EXPECT_NEAR(order_of_stiff_jet(5e-5, 1e4, 3), 3, 0.2);
   EXPECT_NEAR(order_of_stiff_jet(1.4e-4, 1e4, 3), 2, 0.2);

@@ -12,8 +12,8 @@ namespace ehdjet {
 /// The explicit method is left when it steps more than 0.7 of its stability limit, the implicit one
 /// when it steps less than a quarter of it, three looks in a row. The limit is that of the fastest
 /// modes of the system's stiff part. A look costs one linearization; there is one every eight
-/// steps, and after a rejection. Nothing else differs from the explicit method alone: as long as it is
-/// not left, every bit is the same.
+/// steps, and after a rejection. Nothing else differs from the explicit method alone: as long as it
+/// is not left, every bit is the same.
 class AutoIntegrator final : public Integrator {
 public:
   explicit AutoIntegrator(const ErrorScale& scale);
