@@ -107,6 +107,9 @@ std::string summary(const Simulation& s, const Scene& scene,
     text += fmt::format("  refinements   {} that changed the mesh\n", *cost.refinements);
   if (const std::string method = coulomb_method(s); !method.empty())
     text += fmt::format("  Coulomb       {}\n", method);
+  if (cost.method)
+    text += fmt::format("  integrator    auto: {} since t = {:.4g} s, {} changes\n",
+                        cost.method->in_use, cost.method->since, cost.method->changes);
   text += fmt::format("  cost          {} evaluations, {} steps, {} rejected, {:.2f} s\n",
                       cost.evaluations, cost.steps, cost.rejected, cost.wall_time);
   if (s.dynamics().coincident_pairs() > 0)

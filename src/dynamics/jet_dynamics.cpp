@@ -113,6 +113,42 @@ void JetDynamics::evaluate(double t, std::span<double> y, std::span<double> rate
     for (std::size_t c = 0; c < columns; ++c) rate[c * n + k] = 0;
 }
 
+void JetDynamics::linearize(double t, std::span<const double> y) {
+  stage_.time = t, stage_.columns = {y, mass_.size()};
+  stage_.invalidate();
+  linearized_at_ = t;
+  jacobian_.reset(mass_.size(), stage_.first);
+  for (const auto& term : terms_) term->add_derivatives(stage_, jacobian_.links());
+  for (const std::size_t k : held_) jacobian_.hold(k);
+}
+
+// The nozzle is the only bead that moves in a prescribed way and pulls at another one.
+void JetDynamics::add_time_derivative(double factor, std::span<double> out) const {
+  const std::size_t k = stage_.first;
+  if (!nozzle_ || jacobian_.is_held(k)) return;
+  Vec3 velocity = nozzle_->nozzle.velocity(linearized_at_);
+  velocity.x() = 0; // the fluid flows through it, it stays
+  const Vec3 acceleration = nozzle_->nozzle.acceleration(linearized_at_);
+  const LinkDerivatives& links = jacobian_.links();
+  const JetColumns<double> rates{out, mass_.size()};
+  rates.velocity().add(k, factor * inverse_mass_[k] * (links.pull_lower[k] * velocity));
+  if (rates.has_stress())
+    rates.stress()[k] -=
+        factor * (links.stretching[k].dot(acceleration) + links.turning[k].dot(velocity));
+}
+
+// Neighbours in opposite phase: s^2 + s/tau + omega^2 = 0 with elasticity, s^2 + omega^2 = 0
+// without.
+StiffPart::Modes JetDynamics::fastest_modes() const {
+  const auto [elastic, tension] = jacobian_.squared_rates(inverse_mass_);
+  double relaxation = 0;
+  for (const double r : jacobian_.links().relaxation) relaxation = std::max(relaxation, r);
+  Modes modes{-relaxation, 0, std::complex<double>(0, std::sqrt(tension))};
+  if (const double decay = relaxation / 2, omega = std::sqrt(elastic); omega > decay)
+    modes[1] = {-decay, std::sqrt((omega - decay) * (omega + decay))};
+  return modes;
+}
+
 std::uint64_t JetDynamics::coincident_pairs() const {
   std::uint64_t pairs = 0;
   for (const auto& term : terms_) pairs += term->coincident_pairs();

@@ -52,4 +52,29 @@ void Maxwell::stress_rate(const Stage& stage, std::span<double> rate) {
   }
 }
 
+// With F = V sigma d/l^2, sigma' = G (w.d)/l^2 - sigma/tau:
+//     dF/dd = V sigma/l^2 (I - 2 t t^T),      dF/d sigma = V d/l^2
+//     d sigma'/dw = G d/l^2,                  d sigma'/dd = G/l^2 (w - 2 (w.t) t)
+void Maxwell::add_derivatives(const Stage& stage, LinkDerivatives& out) {
+  const Links& links = stage.links();
+  const auto v = stage.columns.velocity();
+  const auto sigma = stage.columns.stress();
+  auto landed = stage.landed.begin();
+  for (std::size_t k = links.first; k <= links.last; ++k) {
+    const std::size_t upstream = k == links.first ? 0 : k - 1;
+    while (landed != stage.landed.end() && landed->bead < upstream) ++landed;
+    const bool rests = landed != stage.landed.end() && landed->bead == upstream;
+    const double l = links.length[k], stiffness = elastic_modulus_ / (l * l);
+    const Vec3 d(links.dx[k], links.dy[k], links.dz[k]), t = d / l;
+    const Vec3 w = rests ? v[k] : Vec3(v[k] - v[upstream]);
+    const double area_per_length = stage.volume[k] / (l * l);
+    out.add_pull(k,
+                 area_per_length * sigma[k] * (Mat3::Identity() - 2 * t * t.transpose()));
+    out.tension[k] += area_per_length * d;
+    out.stretching[k] += stiffness * d;
+    out.turning[k] += stiffness * (w - 2 * w.dot(t) * t);
+    out.relaxation[k] += relaxation_rate_;
+  }
+}
+
 } // namespace ehdjet

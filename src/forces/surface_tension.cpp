@@ -30,6 +30,25 @@ void BendingSurfaceTension::add_force(const Stage& stage, Vec3View force) {
   }
 }
 
+// On a nearly straight chain K = 2/(l_k + l_(k+1)) (t_(k+1) - t_k), and dt/dd = (I - t t^T)/l.
+void BendingSurfaceTension::add_derivatives(const Stage& stage, LinkDerivatives& out) {
+  const Links& links = stage.links();
+  const auto radius = [&](std::size_t k) {
+    return std::sqrt(stage.volume[k] / (std::numbers::pi * links.length[k]));
+  };
+  const auto across = [&](std::size_t k) -> Mat3 {
+    const Vec3 t = Vec3(links.dx[k], links.dy[k], links.dz[k]) / links.length[k];
+    return (Mat3::Identity() - t * t.transpose()) / links.length[k];
+  };
+  for (std::size_t k = links.first; k < links.last; ++k) {
+    const double mean_radius = (radius(k) + radius(k + 1)) / 2;
+    const double strength = coefficient_ * std::numbers::pi * mean_radius * mean_radius * 2
+                            / (links.length[k] + links.length[k + 1]);
+    out.pull_lower[k] += strength * across(k);
+    out.pull_upper[k + 1] += strength * across(k + 1);
+  }
+}
+
 void LineSurfaceTension::add_force(const Stage& stage, Vec3View force) {
   const Links& links = stage.links();
   const double *l = links.length.data(), *v = stage.volume.data();
@@ -40,6 +59,18 @@ void LineSurfaceTension::add_force(const Stage& stage, Vec3View force) {
   for (std::size_t k = links.first; k <= links.last; ++k) // pi a alpha / l
     t[k] = alpha * std::sqrt(std::numbers::pi * v[k] / l[k]) / l[k];
   add_link_tension(links, tension_per_length_, force);
+}
+
+// With F = alpha sqrt(pi V) d l^(-3/2): dF/dd = alpha sqrt(pi V) l^(-3/2) (I - 3/2 t t^T).
+void LineSurfaceTension::add_derivatives(const Stage& stage, LinkDerivatives& out) {
+  const Links& links = stage.links();
+  for (std::size_t k = links.first; k <= links.last; ++k) {
+    const double l = links.length[k];
+    const Vec3 t = Vec3(links.dx[k], links.dy[k], links.dz[k]) / l;
+    const double pull =
+        coefficient_ * std::sqrt(std::numbers::pi * stage.volume[k] / l) / l;
+    out.add_pull(k, pull * (Mat3::Identity() - 1.5 * t * t.transpose()));
+  }
 }
 
 } // namespace ehdjet

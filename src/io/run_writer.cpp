@@ -105,6 +105,11 @@ void write_statistics(hid_t file, const RunStatistics& statistics) {
   hdf5::write_attribute(group, "landings", statistics.landings);
   if (statistics.refinements)
     hdf5::write_attribute(group, "refinements", *statistics.refinements);
+  if (statistics.method) {
+    hdf5::write_attribute(group, "method", std::string(statistics.method->in_use));
+    hdf5::write_attribute(group, "method_since", statistics.method->since);
+    hdf5::write_attribute(group, "method_changes", statistics.method->changes);
+  }
   hdf5::write_attribute(group, "coincident_pairs", statistics.coincident_pairs);
   hdf5::write_attribute(group, "shortest_step", statistics.shortest_step);
   hdf5::write_attribute(group, "longest_step", statistics.longest_step);

@@ -16,6 +16,10 @@ Vec3 Nozzle::velocity(double t) const {
   return {fluid_velocity, -speed * std::sin(angle), speed * std::cos(angle)};
 }
 
+Vec3 Nozzle::acceleration(double t) const {
+  return -angular_frequency * angular_frequency * position(t);
+}
+
 Vec3 Embryo::position(const Vec3& nozzle, const Vec3& bead) const {
   const Vec3 segment = bead - nozzle;
   return nozzle + link_length / segment.norm() * segment;

@@ -1,10 +1,14 @@
 #include "cross_checks.hpp"
 
-#include "ehdjet/integrators/butcher_tableau.hpp"
+#include "ehdjet/integrators/make_integrator.hpp"
 #include "ehdjet/scene/schema.hpp"
+#include "ehdjet/scene/stability.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
+#include <limits>
+#include <string>
 
 namespace ehdjet {
 namespace {
@@ -12,6 +16,10 @@ namespace {
 constexpr double default_rtol = 1e-6;
 /// More rows than this are a mistyped interval: 1e8 rows of observables are 10 GB.
 constexpr double most_rows = 1e8;
+/// Steps that nobody waits for: weeks with 100 beads.
+constexpr double too_many_steps = 1e8;
+/// Fewer are refused too if stability asks for steps so much shorter than accuracy does.
+constexpr double many_steps = 1e6, far_below = 1e-3;
 
 void check_jet(const SceneConfig& c, const SceneText& text) {
   if (c.nozzle && c.chain)
@@ -63,7 +71,8 @@ void check_field(const SceneConfig& c, const SceneText& text) {
 }
 
 void settle_step(IntegratorConfig& i, const SceneText& text) {
-  const bool has_error_estimate = butcher_tableau(i.method).error_order > 0;
+  const IntegratorDescription& method = integration_method(i.method);
+  const bool has_error_estimate = method.estimates_errors;
   const std::string method_is = fmt::format("integrator.method = \"{}\"", i.method);
   if (i.rtol && i.step)
     text.fail(
@@ -71,11 +80,17 @@ void settle_step(IntegratorConfig& i, const SceneText& text) {
         fmt::format("integrator.rtol = {} and integrator.step = {} s: the step is adaptive "
                     "or fixed. Remove one",
                     *i.rtol, *i.step));
+  if (i.step && method.kind == MethodKind::chooses)
+    text.fail("integrator.step",
+              fmt::format("integrator.step = {} s and {}: a choice of method goes by the "
+                          "steps that a tolerance allows. Name a method, or give "
+                          "integrator.rtol instead",
+                          *i.step, method_is));
   if (i.rtol && !has_error_estimate)
     text.fail(
         "integrator.rtol",
         fmt::format("integrator.rtol = {} and {}: this method has no error estimate. Give "
-                    "integrator.step, or take \"dormand-prince\" or \"dop853\"",
+                    "integrator.step, or leave the method to \"auto\"",
                     *i.rtol, method_is));
   if (!i.rtol && !i.step) {
     if (!has_error_estimate)
@@ -258,6 +273,39 @@ void check_chain_fits(const Scene& scene, const SceneText& text) {
               fmt::format(
                   "collector.distance = {} m, and bead {} of {} is at x = {} m, beyond it",
                   h, beyond - x.begin(), scene.config.chain->file, *beyond));
+}
+
+void check_stability(const Scene& scene, const SceneText& text) {
+  const IntegratorConfig& i = scene.config.integrator;
+  if (i.step || integration_method(i.method).kind != MethodKind::explicit_steps) return;
+  const LinkState link = link_state(scene, stiffest_link(scene));
+  const ChainRates rates = chain_rates(scene.config, link);
+  const StabilityLimits limits = step_limits(rates, butcher_tableau(i.method));
+  const double unlimited = std::numeric_limits<double>::infinity();
+  const double viscoelastic = limits.viscoelastic.value_or(unlimited),
+               tension = limits.surface_tension.value_or(unlimited),
+               limit = std::min(viscoelastic, tension);
+  const double steps = scene.config.run.end_time / limit;
+  const double motion = 1 / rates.coulomb.value_or(0); // infinite without charges
+  const bool far_below_accuracy =
+      std::isfinite(motion) && limit < far_below * motion && steps > many_steps;
+  if (steps <= too_many_steps && !far_below_accuracy) return;
+
+  std::string reason;
+  if (tension < viscoelastic)
+    reason = fmt::format("surface tension moves links of {:.3g} m at {:.3g} 1/s",
+                         link.length, *rates.surface_tension);
+  else if (*rates.relaxation > *rates.elastic)
+    reason = fmt::format("stress relaxes at G/mu = {:.3g} 1/s", *rates.relaxation);
+  else
+    reason = fmt::format("elastic waves turn links of {:.3g} m around at {:.3g} 1/s",
+                         link.length, *rates.elastic);
+  text.fail("integrator.method",
+            fmt::format("integrator.method = \"{}\": {}, so that explicit steps are stable "
+                        "up to about {:.2g} s only and {:.4g} s take {:.1e} of them. Take "
+                        "integrator.method = \"auto\" (the default) or \"ros34pw2\", whose "
+                        "steps this does not limit",
+                        i.method, reason, limit, scene.config.run.end_time, steps));
 }
 
 } // namespace ehdjet

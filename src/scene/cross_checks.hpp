@@ -13,4 +13,8 @@ void settle(SceneConfig& config, const SceneText& text);
 /// Checks that the beads of a chain scene fit the rest of the scene.
 void check_chain_fits(const Scene& scene, const SceneText& text);
 
+/// Refuses an explicit method for a fluid that would hold its adaptive steps at their stability
+/// limit for a very long time.
+void check_stability(const Scene& scene, const SceneText& text);
+
 } // namespace ehdjet

@@ -222,6 +222,7 @@ Scene read_scene_text(const std::string& text, const std::string& name,
     scene.chain = read_chain(folder / chain.file, chain.time);
     check_chain_fits(scene, source);
   }
+  check_stability(scene, source);
   return scene;
 }
 

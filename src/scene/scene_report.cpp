@@ -37,7 +37,7 @@ std::string stability_text(const Scene& scene) {
   const std::size_t k = stiffest_link(scene);
   const LinkState link = link_state(scene, k);
   const ChainRates rates = chain_rates(scene.config, link);
-  const StepLimits limits = step_limits(rates);
+  const StabilityLimits limits = step_limits(rates);
   if (!rates.elastic && !rates.coulomb && !rates.surface_tension) return "";
   std::string text = fmt::format(
       "\nFastest rates of a uniform chain like {} (l = {:.6g} m, a = {:.6g} m), and the "

@@ -1,7 +1,7 @@
 #include "ehdjet/scene/schema.hpp"
 
 #include "ehdjet/coulomb/make_solver.hpp"
-#include "ehdjet/integrators/butcher_tableau.hpp"
+#include "ehdjet/integrators/make_integrator.hpp"
 
 #include <fmt/format.h>
 
@@ -20,7 +20,8 @@ std::string Range::text() const {
 
 Words integration_method_names() {
   Words words;
-  for (const ButcherTableau& m : butcher_tableaus()) words.names.push_back(m.name);
+  for (const IntegratorDescription& m : integration_methods())
+    words.names.push_back(m.name);
   return words;
 }
 

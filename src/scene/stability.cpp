@@ -2,9 +2,11 @@
 
 #include "ehdjet/core/constants.hpp"
 #include "ehdjet/core/error.hpp"
+#include "ehdjet/integrators/stability_region.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <limits>
 #include <numbers>
 
@@ -14,15 +16,15 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double zeta_3 = 1.2020569031595942854; // Apery's constant, OEIS A002117
 
-double limit_of_oscillation(double rate) {
-  return rate == 0 ? infinity : longest_stable_step({0, rate});
+double limit_of_oscillation(const ButcherTableau& method, double rate) {
+  return longest_stable_step(method, {0, rate});
 }
 
 /// The least limit over the modes of the Maxwell chain, kappa from 0 (pure relaxation) to pi.
-double viscoelastic_limit(double relaxation, double elastic) {
+double viscoelastic_limit(const ButcherTableau& method, double relaxation, double elastic) {
   if (std::isinf(relaxation)) return 0;
   constexpr int modes = 64;
-  double limit = longest_stable_step(-relaxation);
+  double limit = longest_stable_step(method, -relaxation);
   for (int i = 1; i <= modes; ++i) {
     const double omega = elastic * std::sin(0.5 * std::numbers::pi * i / modes);
     const double decay = 0.5 * relaxation,
@@ -30,7 +32,7 @@ double viscoelastic_limit(double relaxation, double elastic) {
     const std::complex<double> root = std::sqrt(
         std::complex<double>((decay - omega) / scale * ((decay + omega) / scale)));
     // The faster root; in an overdamped mode the other one is slower and real.
-    limit = std::min(limit, longest_stable_step(-decay - scale * root));
+    limit = std::min(limit, longest_stable_step(method, -decay - scale * root));
   }
   return limit;
 }
@@ -60,39 +62,19 @@ ChainRates chain_rates(const SceneConfig& config, const LinkState& link) {
   return rates;
 }
 
-StepLimits step_limits(const ChainRates& rates) {
-  StepLimits limits;
+StabilityLimits step_limits(const ChainRates& rates, const ButcherTableau& method) {
+  StabilityLimits limits;
   if (rates.relaxation)
-    limits.viscoelastic = viscoelastic_limit(*rates.relaxation, *rates.elastic);
-  if (rates.coulomb) limits.coulomb = limit_of_oscillation(*rates.coulomb);
+    limits.viscoelastic = viscoelastic_limit(method, *rates.relaxation, *rates.elastic);
+  if (rates.coulomb) limits.coulomb = limit_of_oscillation(method, *rates.coulomb);
   if (rates.surface_tension)
-    limits.surface_tension = limit_of_oscillation(*rates.surface_tension);
+    limits.surface_tension = limit_of_oscillation(method, *rates.surface_tension);
   return limits;
 }
 
-double StepLimits::least() const {
+double StabilityLimits::least() const {
   return std::min({viscoelastic.value_or(infinity), coulomb.value_or(infinity),
                    surface_tension.value_or(infinity)});
-}
-
-double longest_stable_step(std::complex<double> s) {
-  EHDJET_EXPECTS(s.real() <= 0 && std::abs(s) > 0);
-  const std::complex<double> direction = s / std::abs(s);
-  const auto stable = [&](double r) {
-    const std::complex<double> z = r * direction;
-    const double round_off = 1e-14; // on the imaginary axis |R| = 1 - r^6/144 + ...
-    return std::abs(1. + z * (1. + z / 2. * (1. + z / 3. * (1. + z / 4.))))
-           <= 1 + round_off;
-  };
-  // The stability region is left before |z| = 4 in every direction (Hairer, Wanner, Solving
-  // Ordinary Differential Equations II, 2nd ed. (1996), fig. IV.2.1).
-  double inside = 0, outside = 0.05;
-  while (outside < 4 && stable(outside)) inside = outside, outside += 0.05;
-  for (int i = 0; i < 60; ++i) {
-    const double middle = 0.5 * (inside + outside);
-    (stable(middle) ? inside : outside) = middle;
-  }
-  return inside / std::abs(s);
 }
 
 LinkState link_state(const Scene& scene, std::size_t k) {

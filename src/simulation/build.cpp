@@ -10,8 +10,7 @@
 #include "ehdjet/forces/gravity.hpp"
 #include "ehdjet/forces/maxwell.hpp"
 #include "ehdjet/forces/surface_tension.hpp"
-#include "ehdjet/integrators/butcher_tableau.hpp"
-#include "ehdjet/integrators/runge_kutta.hpp"
+#include "ehdjet/integrators/make_integrator.hpp"
 #include "ehdjet/scene/dimensionless.hpp"
 
 #include <algorithm>
@@ -187,8 +186,7 @@ std::unique_ptr<JetDynamics> build_dynamics(const Scene& scene) {
 
 std::unique_ptr<Simulation> build_simulation(const Scene& scene) {
   const SceneConfig& c = scene.config;
-  auto integrator = std::make_unique<RungeKutta>(butcher_tableau(c.integrator.method),
-                                                 error_scale(scene));
+  auto integrator = make_integrator(c.integrator.method, error_scale(scene));
   StepLimits limits{.fixed = c.integrator.step,
                     .initial = c.integrator.initial_step,
                     .longest = c.integrator.max_step.value_or(StepLimits{}.longest),

@@ -33,6 +33,7 @@ public:
         return;
       }
   }
+  [[nodiscard]] StiffPart* stiff_part() override { return dynamics_.stiff_part(); }
   std::string cause;
 
 private:
@@ -77,6 +78,9 @@ Simulation::Simulation(JetState jet, std::unique_ptr<JetDynamics> dynamics,
     ledger_.inserted_charge += jet_.charge[k];
     ledger_.inserted_volume += jet_.volume[k];
   }
+  if (integrator_->method_in_use() != integrator_->name())
+    statistics_.method =
+        MethodRecord{.in_use = integrator_->method_in_use(), .since = jet_.time};
   dynamics_->bind(jet_);
   dynamics_->prescribe(jet_.time, jet_.y);
 }
@@ -150,6 +154,7 @@ double Simulation::attempt_step(double h) {
       statistics_.coulomb_error = checks.last;
       statistics_.coulomb_violations = checks.violations;
     }
+    control_.set_error_order(integrator_->error_order());
     if (limits_.fixed) {
       if (std::isnan(outcome.error)) fail(h, "the state is not a number after");
       break;
@@ -168,9 +173,19 @@ double Simulation::attempt_step(double h) {
   ++statistics_.steps;
   statistics_.shortest_step = std::min(statistics_.shortest_step, h);
   statistics_.longest_step = std::max(statistics_.longest_step, h);
+  if (statistics_.method) note_method();
   if (after_event_) restart_step_[*after_event_] = step_;
   after_event_.reset();
   return h;
+}
+
+void Simulation::note_method() {
+  MethodRecord& record = *statistics_.method;
+  const std::string_view now = integrator_->method_in_use();
+  if (now == record.in_use) return;
+  // What the first step was taken with is the start, not a change.
+  if (statistics_.steps > 1) ++record.changes;
+  record.in_use = now, record.since = jet_.time;
 }
 
 std::optional<Simulation::FoundEvent> Simulation::first_event(const DenseStep& step) {

@@ -29,6 +29,19 @@ TEST(Run, ends_with_a_summary_and_a_file) {
               HasSubstr("time_s,beads,tip_x_m"));
 }
 
+// Who chose the method is told how it went, who named one knows.
+TEST(Run, says_which_method_was_chosen) {
+  const Folder folder;
+  const Outcome chosen = command(folder, "run " + brief + " -o chosen.h5");
+  EXPECT_THAT(chosen.out, HasSubstr("auto: dormand-prince since t = 0 s, 0 changes"));
+  const Outcome stiff =
+      command(folder, "run " + brief + " -o stiff.h5 --set viscoelasticity.viscosity=1e-9");
+  EXPECT_THAT(stiff.out, HasSubstr("auto: ros34pw2 since t = 0 s"));
+  const Outcome named = command(
+      folder, "run " + brief + " -o named.h5 --set integrator.method=dormand-prince");
+  EXPECT_THAT(named.out, Not(HasSubstr("integrator")));
+}
+
 TEST(Run, says_nothing_when_quiet) {
   const Folder folder;
   const Outcome o = command(folder, "run " + brief + " -o jet.h5 --quiet");
@@ -68,6 +81,8 @@ TEST(Run, refuses_a_wrong_scene_before_anything_runs) {
   EXPECT_THAT(refusal("run.end_time=-1"),
               AllOf(HasSubstr("-1"), HasSubstr("greater than 0")));
   EXPECT_THAT(refusal("integrator.method=leapfrog"), HasSubstr("dormand-prince"));
+  EXPECT_THAT(refusal("integrator.method=dop853 --set viscoelasticity.viscosity=1e-9"),
+              AllOf(HasSubstr("relaxes"), HasSubstr("auto")));
 }
 
 TEST(Run, names_a_scene_that_is_missing_or_no_toml) {

@@ -3,8 +3,8 @@
 #include <omp.h>
 
 #include "coulomb/all_solvers.hpp"
-#include "coulomb/allocations.hpp"
 #include "coulomb/reference.hpp"
+#include "support/allocations.hpp"
 
 namespace ehdjet::test {
 namespace {

@@ -122,6 +122,29 @@ TEST(RunFile, has_only_the_parts_that_were_asked_for) {
   EXPECT_THROW(static_cast<void>(read.deposit()), InputError);
 }
 
+TEST(RunFile, records_the_method_if_it_was_chosen) {
+  const ScratchFolder folder;
+  const auto records = [&](const std::optional<MethodRecord>& method) {
+    RunStatistics statistics;
+    statistics.method = method;
+    {
+      RunFile run(folder / "run.h5", true, {}, 1);
+      run.finish("complete", "", statistics, {});
+    }
+    const hid_t file = H5Fopen((folder / "run.h5").c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+    bool all = true, any = false;
+    for (const char* name : {"method", "method_since", "method_changes"}) {
+      const bool there = H5Aexists_by_name(file, "statistics", name, H5P_DEFAULT) > 0;
+      all = all && there, any = any || there;
+    }
+    H5Fclose(file);
+    EXPECT_EQ(all, any);
+    return any;
+  };
+  EXPECT_FALSE(records(std::nullopt));
+  EXPECT_TRUE(records(MethodRecord{.in_use = "ros34pw2", .since = 0.1, .changes = 2}));
+}
+
 TEST(RunFile, every_data_set_has_a_unit_and_a_description) {
   const ScratchFolder folder;
   write_run(folder / "run.h5", 2);

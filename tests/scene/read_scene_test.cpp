@@ -1,4 +1,4 @@
-#include "ehdjet/integrators/butcher_tableau.hpp"
+#include "ehdjet/integrators/make_integrator.hpp"
 #include "ehdjet/scene/schema.hpp"
 
 #include <filesystem>
@@ -51,19 +51,21 @@ TEST(ReadScene, the_text_is_kept_byte_for_byte) {
 
 TEST(ReadScene, steps_are_adaptive_unless_a_step_is_given) {
   EXPECT_EQ(read(good_scene_but("rtol = 1e-5\n", "")).config.integrator.rtol, 1e-6);
-  const auto fixed = read(good_scene_but("rtol = 1e-5", "step = 1e-8")).config.integrator;
+  const auto fixed = read(good_scene_but("rtol = 1e-5", "method = \"rk4\"\nstep = 1e-8"))
+                         .config.integrator;
   EXPECT_EQ(fixed.step, 1e-8);
   EXPECT_FALSE(fixed.rtol);
 }
 
 TEST(ReadScene, every_method_is_accepted_with_what_it_needs) {
-  for (const ehdjet::ButcherTableau& method : ehdjet::butcher_tableaus()) {
+  for (const ehdjet::IntegratorDescription& method : ehdjet::integration_methods()) {
     const std::string line = "method = \"" + std::string(method.name) + "\"\n";
-    EXPECT_EQ(complaint_about(good_scene_but("rtol = 1e-5", line + "step = 1e-8")),
-              "(accepted)");
+    EXPECT_EQ(complaint_about(good_scene_but("rtol = 1e-5", line + "step = 1e-8"))
+                  == "(accepted)",
+              method.kind != ehdjet::MethodKind::chooses);
     EXPECT_EQ(complaint_about(good_scene_but("rtol = 1e-5", line + "rtol = 1e-8"))
                   == "(accepted)",
-              method.error_order > 0);
+              method.estimates_errors);
   }
 }
 
@@ -87,9 +89,10 @@ TEST(ReadScene, extreme_but_possible_jets_are_allowed) {
 
 TEST(Overrides, replace_add_and_remove_keys_and_tables) {
   const SceneConfig c =
-      read(good_scene, {"nozzle.radius=4e-5", "surface_tension.form=line",
-                        "output.frames=1", "title=two words", "gravity=",
-                        "integrator.rtol=", "integrator.step=1e-7", "field={strength=5}"})
+      read(good_scene,
+           {"nozzle.radius=4e-5", "surface_tension.form=line", "output.frames=1",
+            "title=two words", "gravity=", "integrator.rtol=", "integrator.step=1e-7",
+            "integrator.method=rk4", "field={strength=5}"})
           .config;
   EXPECT_EQ(c.nozzle->radius, 4e-5);
   EXPECT_EQ(c.surface_tension->form, SurfaceTensionForm::line); // a bare word is a string
@@ -136,7 +139,9 @@ TEST(ShippedScenes, resolved_text_reads_back_to_the_same_configuration) {
 }
 
 TEST(ResolvedToml, keeps_every_bit_and_every_character) {
-  SceneConfig c = read(good_scene, {"integrator.rtol=", "integrator.step=1.1e-8"}).config;
+  SceneConfig c = read(good_scene, {"integrator.rtol=", "integrator.step=1.1e-8",
+                                    "integrator.method=dop853"})
+                      .config;
   c.title = "quotes \" backslash \\ new\nline, tab\t, rho = \xcf\x81";
   c.nozzle->radius = 5e-5 / 3;
   c.nozzle->phase = -0.1;

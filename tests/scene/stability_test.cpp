@@ -1,7 +1,6 @@
 #include "ehdjet/scene/stability.hpp"
 
 #include <cmath>
-#include <complex>
 #include <limits>
 
 #include "support.hpp"
@@ -76,16 +75,6 @@ TEST(Stability, line_tension_is_the_slender_form_of_surface_tension) {
   EXPECT_NEAR(*chain_rates(c, at_nozzle).surface_tension / expected, 1, 1e-14);
 }
 
-TEST(Stability, runge_kutta_is_stable_up_to_its_known_limits) {
-  // 2 sqrt(2) on the imaginary axis; on the real one the root of 24 + 12 x + 4 x^2 + x^3.
-  EXPECT_NEAR(longest_stable_step({0, 1}), 2 * std::sqrt(2), 1e-6);
-  EXPECT_NEAR(longest_stable_step(-1), 2.785293563405, 1e-9);
-  EXPECT_NEAR(longest_stable_step({0, -50}), 2 * std::sqrt(2) / 50, 1e-7);
-  const double diagonal = longest_stable_step({-1, 1}) * std::sqrt(2);
-  EXPECT_GT(diagonal, 2.5);
-  EXPECT_LT(diagonal, 3.5);
-}
-
 TEST(Stability, a_term_that_is_absent_or_idle_limits_nothing) {
   SceneConfig none;
   EXPECT_EQ(step_limits(chain_rates(none, at_nozzle)).least(),
@@ -94,7 +83,7 @@ TEST(Stability, a_term_that_is_absent_or_idle_limits_nothing) {
   idle.surface_tension->coefficient = 0;
   LinkState uncharged = at_nozzle;
   uncharged.charge_density = 0;
-  const StepLimits limits = step_limits(chain_rates(idle, uncharged));
+  const StabilityLimits limits = step_limits(chain_rates(idle, uncharged));
   EXPECT_FALSE(limits.viscoelastic);
   EXPECT_EQ(limits.least(), std::numeric_limits<double>::infinity());
 }

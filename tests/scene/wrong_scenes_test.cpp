@@ -150,9 +150,14 @@ const Wrong wrong_scenes[] = {
      "rtol = 1e-5",
      "method = \"euler\"",
      {"s.toml:23: ", "integrator.method = \"euler\" needs integrator.step"}},
+    {"fixed_steps_of_no_method_in_particular",
+     "rtol = 1e-5",
+     "step = 1e-8",
+     {"s.toml:23: ", "integrator.step = 1e-08 s", "integrator.method = \"auto\"",
+      "Name a method"}},
     {"first_step_of_fixed_steps",
      "rtol = 1e-5",
-     "step = 1e-8\ninitial_step = 1e-9",
+     "step = 1e-8\ninitial_step = 1e-9\nmethod = \"rk4\"",
      {"s.toml:24: ", "integrator.initial_step = 1e-09", "integrator.step = 1e-08 s"}},
     {"longest_step_below_the_shortest",
      "rtol = 1e-5",
@@ -294,6 +299,44 @@ TEST(WrongScenes, a_missing_file_is_named_with_the_reason) {
 TEST(WrongScenes, a_missing_chain_file_is_named_with_its_key) {
   expect_all(complaint_about("[run]\nend_time = 1\n[chain]\nfile = \"none.csv\"\n"),
              {"none.csv", "chain.file", "No such file"});
+}
+
+/// The good scene of another fluid, by an explicit method.
+std::string explicit_scene(const std::string& modulus, const std::string& viscosity,
+                           const std::string& method = "dormand-prince") {
+  return complaint_about(good_scene, {"viscoelasticity.elastic_modulus=" + modulus,
+                                      "viscoelasticity.viscosity=" + viscosity,
+                                      "integrator.method=" + method});
+}
+
+TEST(StiffScenes, are_refused_to_explicit_methods_with_the_term_its_rate_and_the_way_out) {
+  expect_all(explicit_scene("1e9", "1e-3"),
+             {"integrator.method = \"dormand-prince\"", "relaxes at G/mu = 1e+12 1/s",
+              "3.3e-12 s", "3.0e+09", "\"auto\""});
+  expect_all(explicit_scene("1e9", "2"), {"G/mu = 5e+08 1/s", "6.6e-09 s"});
+  expect_all(
+      complaint_about(good_scene, {"nozzle.link_length=1e-8", "nozzle.radius=2.5e-9",
+                                   "viscoelasticity=", "integrator.method=dormand-prince"}),
+      {"surface tension moves links of 1e-08 m", "1e+10 1/s"});
+  expect_all(
+      complaint_about(good_scene, {"nozzle.link_length=1e-8", "nozzle.radius=2.5e-9",
+                                   "viscoelasticity.elastic_modulus=1e9",
+                                   "viscoelasticity.viscosity=1e4",
+                                   "surface_tension=", "integrator.method=dormand-prince"}),
+      {"elastic waves turn links of 1e-08 m around at 2.18e+11 1/s"});
+}
+
+TEST(StiffScenes, are_run_by_the_other_methods_and_if_it_takes_a_while_by_explicit_ones) {
+  for (const std::string method : {"auto", "ros34pw2"})
+    EXPECT_EQ(explicit_scene("1e9", "1e-3", method), "(accepted)") << method;
+  EXPECT_EQ(explicit_scene("5e4", "1e-3"), "(accepted)"); // 6e-8 s, 2e5 steps
+  EXPECT_EQ(explicit_scene("5e3", "2"), "(accepted)");
+  EXPECT_EQ(explicit_scene("0", "2"), "(accepted)");
+  // Whoever fixes the step knows it.
+  EXPECT_EQ(complaint_about(
+                good_scene_but("rtol = 1e-5", "method = \"rk4\"\nstep = 1e-8"),
+                {"viscoelasticity.elastic_modulus=1e9", "viscoelasticity.viscosity=1e-3"}),
+            "(accepted)");
 }
 
 } // namespace

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "ehdjet/integrators/make_integrator.hpp"
 #include "ehdjet/scene/read_scene.hpp"
 #include "ehdjet/simulation/build.hpp"
 
@@ -37,8 +38,7 @@ inline void integrate(Scene& scene, const std::string& method, double rtol_or_st
   IntegratorConfig& c = scene.config.integrator;
   c.method = method;
   c.rtol.reset(), c.step.reset();
-  const bool adaptive = method == "dormand-prince" || method == "dop853";
-  (adaptive ? c.rtol : c.step) = rtol_or_step;
+  (integration_method(method).estimates_errors ? c.rtol : c.step) = rtol_or_step;
 }
 inline void integrate_with_fixed_steps(Scene& scene, const std::string& method,
                                        double step) {

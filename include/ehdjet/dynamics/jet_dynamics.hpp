@@ -1,5 +1,6 @@
 #pragma once
 
+#include "ehdjet/dynamics/chain_jacobian.hpp"
 #include "ehdjet/forces/force_term.hpp"
 #include "ehdjet/integrators/ode_system.hpp"
 #include "ehdjet/jet/jet_state.hpp"
@@ -27,7 +28,10 @@ struct HeldEnds {
 ///
 /// Beads that do not move freely have rate zero: the nozzle and an embryo, whose places are
 /// prescribed at each stage time, held ends, and landed beads.
-class JetDynamics final : public OdeSystem {
+///
+/// Its stiff part are the terms' answers to a change of a link, with dr/dt = v (model 6). Charges
+/// have no part in it.
+class JetDynamics final : public OdeSystem, private StiffPart {
 public:
   void add(std::unique_ptr<ForceTerm> term) { terms_.push_back(std::move(term)); }
   void set_rheology(std::unique_ptr<Rheology> rheology);
@@ -41,6 +45,7 @@ public:
   void bind(const JetState& jet);
 
   void evaluate(double t, std::span<double> y, std::span<double> rate) override;
+  [[nodiscard]] StiffPart* stiff_part() override { return this; }
   /// Puts the nozzle and an embryo in their places at time t.
   void prescribe(double t, std::span<double> y) const;
 
@@ -71,6 +76,12 @@ private:
     Vec3 position;
     double charge;
   };
+  void linearize(double t, std::span<const double> y) override;
+  void factorize(double eta) override { jacobian_.factorize(eta, mass_); }
+  void solve(std::span<double> x) const override { jacobian_.solve(x); }
+  void add_time_derivative(double factor, std::span<double> out) const override;
+  [[nodiscard]] Modes fastest_modes() const override;
+
   void set_stage(double t, std::span<double> y);
   /// Puts beads that have passed an absorbing plane since the step began back to where they
   /// crossed it:  r - v (x - h)/v_x                                         (model 5)
@@ -93,6 +104,8 @@ private:
   std::optional<double> absorbing_plane_; // [m]
   std::vector<Passed> passed_;            // in the present evaluation, from the end on
   std::uint64_t evaluations_ = 0;
+  ChainJacobian jacobian_;   // of the last linearization; empty as long as there was none
+  double linearized_at_ = 0; // [s]
 };
 
 } // namespace ehdjet

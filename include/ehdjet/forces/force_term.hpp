@@ -2,6 +2,7 @@
 
 #include "ehdjet/core/columns.hpp"
 #include "ehdjet/coulomb/solver.hpp"
+#include "ehdjet/forces/link_derivatives.hpp"
 #include "ehdjet/jet/stage.hpp"
 
 #include <cstdint>
@@ -21,6 +22,9 @@ public:
   /// force (beads) += ... [N]. Entries of beads that do not move (nozzle, embryo, landed) may
   /// hold anything: their rates are set to zero afterwards.
   virtual void add_force(const Stage& stage, Vec3View force) = 0;
+  /// links += what the force, and a stress rate, answer to a change of a link, for implicit steps.
+  /// Only terms that may be stiff, which are all local, have something to add.
+  virtual void add_derivatives(const Stage& /*stage*/, LinkDerivatives& /*links*/) {}
   [[nodiscard]] virtual std::string_view name() const = 0;
   /// Pairs of beads at zero distance that were skipped so far, all evaluations together.
   [[nodiscard]] virtual std::uint64_t coincident_pairs() const { return 0; }

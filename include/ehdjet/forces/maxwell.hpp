@@ -20,6 +20,7 @@ public:
   Maxwell(double elastic_modulus, double viscosity); ///< both > 0
   void add_force(const Stage& stage, Vec3View force) override;
   void stress_rate(const Stage& stage, std::span<double> rate) override;
+  void add_derivatives(const Stage& stage, LinkDerivatives& links) override;
   [[nodiscard]] std::string_view name() const override { return "viscoelasticity"; }
 
 private:

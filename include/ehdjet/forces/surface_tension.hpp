@@ -18,6 +18,7 @@ public:
   explicit BendingSurfaceTension(double coefficient) // alpha [N/m]
       : coefficient_(coefficient) {}
   void add_force(const Stage& stage, Vec3View force) override;
+  void add_derivatives(const Stage& stage, LinkDerivatives& links) override;
   [[nodiscard]] std::string_view name() const override { return "surface tension (paper)"; }
 
 private:
@@ -33,6 +34,7 @@ public:
   explicit LineSurfaceTension(double coefficient) // alpha [N/m]
       : coefficient_(coefficient) {}
   void add_force(const Stage& stage, Vec3View force) override;
+  void add_derivatives(const Stage& stage, LinkDerivatives& links) override;
   [[nodiscard]] std::string_view name() const override { return "surface tension (line)"; }
 
 private:

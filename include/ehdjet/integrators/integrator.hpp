@@ -25,8 +25,10 @@ public:
   virtual ~Integrator() = default;
 
   [[nodiscard]] virtual std::string_view name() const = 0;
+  /// Of the last attempt, where the integrator chooses among methods; else its name.
+  [[nodiscard]] virtual std::string_view method_in_use() const { return name(); }
   [[nodiscard]] virtual int order() const = 0;
-  /// The error estimate falls with h to this power; 0 if the method has none.
+  /// The last attempt's error estimate falls with h to this power; 0 if there is none.
   [[nodiscard]] virtual int error_order() const = 0;
 
   /// Tries y(t) -> y(t + h). `y` must stay where it is until the step is committed.

@@ -1,8 +1,30 @@
 #pragma once
 
+#include <array>
+#include <complex>
 #include <span>
 
 namespace ehdjet {
+
+/// J, the part of df/dy that makes a system stiff, as it is at one state. What J leaves out costs a
+/// W-method stability, never order: it may hold what is local and cheap and nothing else.
+class StiffPart {
+public:
+  virtual ~StiffPart() = default;
+  /// J at (t, y). Prescribed components of y stand at their values at t.
+  virtual void linearize(double t, std::span<const double> y) = 0;
+  /// Prepares `solve` for one eta = gamma h [s].
+  virtual void factorize(double eta) = 0;
+  /// x <- (I - eta J)^-1 x. Entries of components with rate zero must be zero, and stay so.
+  virtual void solve(std::span<double> x) const = 0;
+  /// out += factor J dp/dt, where p are the components that the system prescribes: how f
+  /// changes because they move.
+  virtual void add_time_derivative(double factor, std::span<double> out) const = 0;
+  /// Fastest mode of J of each kind (relaxation, elasticity, tension), about: Re <= 0, Im >= 0;
+  /// 0 if there is none [1/s].
+  using Modes = std::array<std::complex<double>, 3>;
+  [[nodiscard]] virtual Modes fastest_modes() const = 0;
+};
 
 /// dy/dt = f(t, y). Components that the system prescribes as functions of time (the nozzle, an
 /// embryo) have rate zero, and `evaluate` overwrites them in `y` with their values at t.
@@ -10,6 +32,8 @@ class OdeSystem {
 public:
   virtual ~OdeSystem() = default;
   virtual void evaluate(double t, std::span<double> y, std::span<double> rate) = 0;
+  /// For implicit methods; null if the system has none to offer.
+  [[nodiscard]] virtual StiffPart* stiff_part() { return nullptr; }
 };
 
 } // namespace ehdjet

@@ -12,6 +12,8 @@ public:
   /// `error_order`: the power q of h with which the error estimate falls.
   explicit StepSizeControl(int error_order)
       : order_(error_order) {}
+  /// For an integrator that has changed its method.
+  void set_error_order(int error_order) { order_ = error_order; }
 
   /// The next step after a step h with error <= 1.
   double after_accepted(double h, double error);

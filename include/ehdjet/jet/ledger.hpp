@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <string_view>
 
 namespace ehdjet {
 
@@ -48,6 +49,13 @@ struct RefinementRecord {
   double worst_link = 0; ///< max |l/l* - 1| over the new links
 };
 
+/// Method of an integrator that chooses among several.
+struct MethodRecord {
+  std::string_view in_use;   ///< name of the method of the last step
+  double since = 0;          ///< its first step began then [s]
+  std::uint64_t changes = 0; ///< of the method so far
+};
+
 /// Cost of the run so far.
 struct RunStatistics {
   std::uint64_t evaluations = 0; ///< of the right-hand side
@@ -55,6 +63,7 @@ struct RunStatistics {
   std::uint64_t rejected = 0;    ///< attempts
   std::uint64_t insertions = 0, releases = 0, landings = 0;
   std::optional<std::uint64_t> refinements; ///< none in a run that does not refine
+  std::optional<MethodRecord> method;       ///< none if the scene names a method
   /// Of the Coulomb force at its last check, relative; none without checks.
   std::optional<double> coulomb_error;
   std::uint64_t coulomb_violations = 0; ///< checks that found more than the tolerance

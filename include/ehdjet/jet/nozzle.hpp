@@ -18,6 +18,8 @@ struct Nozzle {
 
   [[nodiscard]] Vec3 position(double t) const;
   [[nodiscard]] Vec3 velocity(double t) const;
+  /// Of the circle: what the velocity as the end of a link changes by [m/s^2].
+  [[nodiscard]] Vec3 acceleration(double t) const;
 };
 
 /// The bead that forms between the nozzle and the first bead (model 4.1).

@@ -124,7 +124,7 @@ struct RefinementConfig {
 
 /// Time integration (model 6). Either `rtol` (adaptive) or `step` (fixed).
 struct IntegratorConfig {
-  std::string method = "dormand-prince";
+  std::string method = "auto";
   std::optional<double> rtol;         ///< [-]
   std::optional<double> step;         ///< dt [s]
   std::optional<double> initial_step; ///< adaptive only [s]

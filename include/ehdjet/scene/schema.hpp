@@ -272,7 +272,10 @@ void describe(V& v, RefinementConfig& c) {
 
 template <class V>
 void describe(V& v, IntegratorConfig& c) {
-  v.optional("method", c.method, integration_method_names(), "Runge-Kutta method");
+  v.optional(
+      "method", c.method, integration_method_names(),
+      "explicit Runge-Kutta method, the linearly implicit ros34pw2 for stiff fluids, or "
+      "\"auto\": dormand-prince, and ros34pw2 while stability would limit its steps");
   v.optional("rtol", c.rtol, between("-", 1e-14, 0.1),
              "relative tolerance of the adaptive step; excludes `step`",
              "1e-06 unless `step` is given");

@@ -1,8 +1,8 @@
 #pragma once
 
+#include "ehdjet/integrators/butcher_tableau.hpp"
 #include "ehdjet/scene/read_scene.hpp"
 
-#include <complex>
 #include <cstddef>
 #include <optional>
 
@@ -35,21 +35,17 @@ struct ChainRates {
 };
 ChainRates chain_rates(const SceneConfig& config, const LinkState& link);
 
-/// Longest stable step of the classical Runge-Kutta method, per term; infinite if a term that
+/// Longest stable step of an explicit method, per term; infinite if a term that
 /// the scene has limits nothing (no charge, say) [s].
 ///
 /// The viscoelastic limit is the least over the modes s^2 + s/tau + (omega_el sin(kappa/2))^2 = 0.
-struct StepLimits {
+struct StabilityLimits {
   std::optional<double> viscoelastic, coulomb, surface_tension;
 
   [[nodiscard]] double least() const; ///< infinite if no term limits the step
 };
-StepLimits step_limits(const ChainRates& rates);
-
-/// Longest step for which the classical Runge-Kutta method damps y' = s y (or keeps it),
-/// |1 + z + z^2/2 + z^3/6 + z^4/24| <= 1 with z = s dt: 2.828/|s| for an oscillation,
-/// 2.785/|s| for a decay. `s` does not grow: its real part is at most 0.
-double longest_stable_step(std::complex<double> s);
+StabilityLimits step_limits(const ChainRates& rates,
+                            const ButcherTableau& method = butcher_tableau("rk4"));
 
 /// Link k of a chain scene, or (k = 1) the link that leaves the nozzle.
 LinkState link_state(const Scene& scene, std::size_t k = 1);

@@ -65,6 +65,7 @@ private:
 
   double choose_step();
   double attempt_step(double h);
+  void note_method();
   std::optional<FoundEvent> first_event(const DenseStep& step);
   [[nodiscard]] double expected_time(const DenseStep& step) const;
   void show_until(const DenseStep& step, double end);

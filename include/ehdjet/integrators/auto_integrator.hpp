@@ -1,0 +1,60 @@
+#pragma once
+
+#include "ehdjet/integrators/rosenbrock_w.hpp"
+#include "ehdjet/integrators/runge_kutta.hpp"
+
+#include <vector>
+
+namespace ehdjet {
+
+/// Dormand & Prince's explicit pair while accuracy limits the step, ROS34PW2 while stability would.
+///
+/// The explicit method is left when it steps more than 0.7 of its stability limit, the implicit one
+/// when it steps less than a quarter of it, three looks in a row. The limit is that of the fastest
+/// modes of the system's stiff part. A look costs one linearization; there is one every eight
+/// steps, and after a rejection. Nothing else differs from the explicit method alone: as long as it
+/// is not left, every bit is the same.
+class AutoIntegrator final : public Integrator {
+public:
+  explicit AutoIntegrator(const ErrorScale& scale);
+
+  [[nodiscard]] std::string_view name() const override { return "auto"; }
+  [[nodiscard]] std::string_view method_in_use() const override { return active_->name(); }
+  [[nodiscard]] int order() const override { return active_->order(); }
+  [[nodiscard]] int error_order() const override { return active_->error_order(); }
+
+  StepOutcome attempt(OdeSystem& system, double t, double h, std::span<double> y) override;
+  [[nodiscard]] std::span<const double> end_state() const override {
+    return active_->end_state();
+  }
+  [[nodiscard]] std::size_t worst_component() const override {
+    return active_->worst_component();
+  }
+  void prepare_dense_output(OdeSystem& system) override {
+    active_->prepare_dense_output(system);
+  }
+  void dense_output(double theta, std::size_t first, std::span<double> out) const override {
+    active_->dense_output(theta, first, out);
+  }
+  void commit(std::vector<double>& y) override;
+  void restart() override;
+  double initial_step(OdeSystem& system, double t, std::span<double> y) override;
+
+private:
+  void choose(OdeSystem& system, double t, double h, std::span<const double> y);
+  void reconsider(OdeSystem& system, double t, std::span<const double> y);
+  void change_to(Integrator& method);
+  [[nodiscard]] bool longer_than(double share, double h, const StiffPart& stiff) const;
+
+  RungeKutta explicit_;
+  RosenbrockW implicit_;
+  Integrator* active_;
+  double surely_stable_; // |s| h up to which the explicit method damps every mode
+  bool chosen_ = false;
+  bool new_step_ = true;
+  bool rejected_ = false;
+  double accepted_ = 0; // length of the last accepted step [s]
+  int steps_to_look_, in_a_row_ = 0;
+};
+
+} // namespace ehdjet

@@ -1,0 +1,227 @@
+#include "ehdjet/dynamics/jet_dynamics.hpp"
+#include "ehdjet/forces/maxwell.hpp"
+#include "ehdjet/forces/surface_tension.hpp"
+
+#include <Eigen/Dense>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <random>
+#include <utility>
+#include <vector>
+
+namespace ehdjet {
+namespace {
+
+using Eigen::MatrixXd, Eigen::VectorXd;
+
+/// A bent chain in motion with unequal beads, all numbers of order one.
+struct BentJet {
+  explicit BentJet(std::size_t n, bool stress = true) {
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> u(0.5, 1.5);
+    jet.y.assign((stress ? 7 : 6) * n, 0.0);
+    for (auto* column : {&jet.mass, &jet.charge, &jet.volume})
+      for (std::size_t k = 0; k < n; ++k) column->push_back(u(random));
+    const auto c = jet.columns();
+    for (std::size_t k = 0; k < n; ++k) {
+      c.position().set(k, {static_cast<double>(k) * u(random), 0.4 * u(random), u(random)});
+      c.velocity().set(k, {u(random), -u(random), 2 * u(random)});
+      if (stress) c.stress()[k] = 0.3 * u(random);
+    }
+  }
+  JetState jet;
+};
+
+/// One number for each entry of the state: whether f or J may depend on it.
+std::vector<bool> moving_entries(const JetState& jet,
+                                 const std::vector<std::size_t>& held) {
+  std::vector<bool> moves(jet.y.size(), true);
+  for (const std::size_t k : held)
+    for (std::size_t c = 0; c < jet.y.size() / jet.beads(); ++c)
+      moves[c * jet.beads() + k] = false;
+  return moves;
+}
+
+MatrixXd differences(JetDynamics& dynamics, const JetState& jet,
+                     const std::vector<bool>& moves) {
+  const std::size_t size = jet.y.size();
+  const auto columns = static_cast<Eigen::Index>(size);
+  MatrixXd j = MatrixXd::Zero(columns, columns);
+  std::vector<double> y = jet.y, up(size), down(size);
+  for (std::size_t i = 0; i < size; ++i) {
+    if (!moves[i]) continue;
+    const double h = 1e-5, here = y[i];
+    y[i] = here + h, dynamics.evaluate(0.3, y, up);
+    y[i] = here - h, dynamics.evaluate(0.3, y, down);
+    y[i] = here;
+    for (std::size_t row = 0; row < size; ++row)
+      j(static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(i)) =
+          (up[row] - down[row]) / (2 * h);
+  }
+  return j;
+}
+
+/// J as it acts in `solve`: (I - M^-1)/eta, M the matrix of its columns.
+MatrixXd solved(JetDynamics& dynamics, const JetState& jet, const std::vector<bool>& moves,
+                double eta) {
+  StiffPart& stiff = *dynamics.stiff_part();
+  stiff.linearize(0.3, jet.y);
+  stiff.factorize(eta);
+  const auto size = static_cast<Eigen::Index>(jet.y.size());
+  MatrixXd inverse = MatrixXd::Identity(size, size);
+  for (Eigen::Index i = 0; i < size; ++i) {
+    if (!moves[static_cast<std::size_t>(i)]) continue;
+    std::vector<double> x(jet.y.size(), 0.0);
+    x[static_cast<std::size_t>(i)] = 1;
+    stiff.solve(x);
+    inverse.col(i) = VectorXd::Map(x.data(), size);
+  }
+  return (MatrixXd::Identity(size, size) - inverse.inverse()) / eta;
+}
+
+void expect_same(JetDynamics& dynamics, const JetState& jet,
+                 const std::vector<std::size_t>& held, double bound = 1e-7) {
+  dynamics.bind(jet);
+  const auto moves = moving_entries(jet, held);
+  const MatrixXd by_differences = differences(dynamics, jet, moves);
+  for (const double eta : {0.01, 0.3, 3.0}) {
+    const MatrixXd j = solved(dynamics, jet, moves, eta);
+    EXPECT_LE((j - by_differences).cwiseAbs().maxCoeff(),
+              bound * by_differences.cwiseAbs().maxCoeff())
+        << eta;
+  }
+}
+
+constexpr Nozzle turning{
+    .fluid_velocity = 0.7, .amplitude = 0.5, .angular_frequency = 2, .phase = 0.4};
+
+TEST(ChainJacobian, is_what_the_local_forces_answer) {
+  for (const std::size_t n : {2U, 3U, 7U}) {
+    JetDynamics dynamics;
+    dynamics.set_rheology(std::make_unique<Maxwell>(3, 2));
+    dynamics.add(std::make_unique<LineSurfaceTension>(0.8));
+    expect_same(dynamics, BentJet(n).jet, {});
+  }
+}
+
+TEST(ChainJacobian, allows_for_compression) {
+  JetDynamics dynamics;
+  dynamics.set_rheology(std::make_unique<Maxwell>(3, 2));
+  BentJet bent(7);
+  for (double& sigma : bent.jet.columns().stress()) sigma *= -1;
+  expect_same(dynamics, bent.jet, {});
+}
+
+TEST(ChainJacobian, does_without_stress) {
+  JetDynamics dynamics;
+  dynamics.add(std::make_unique<LineSurfaceTension>(0.8));
+  expect_same(dynamics, BentJet(6, false).jet, {});
+}
+
+TEST(ChainJacobian, leaves_held_beads_alone) {
+  for (const HeldEnds ends : {HeldEnds{true, false}, {false, true}, {true, true}}) {
+    JetDynamics dynamics;
+    dynamics.set_rheology(std::make_unique<Maxwell>(3, 2));
+    dynamics.hold(ends);
+    std::vector<std::size_t> held;
+    if (ends.first) held.push_back(0);
+    if (ends.last) held.push_back(6);
+    expect_same(dynamics, BentJet(7).jet, held);
+  }
+}
+
+// The bead after an embryo hangs on bead 0; a landed bead rests whatever its velocity on record.
+TEST(ChainJacobian, knows_embryos_and_landed_beads) {
+  JetDynamics dynamics;
+  dynamics.set_rheology(std::make_unique<Maxwell>(3, 2));
+  dynamics.add(std::make_unique<LineSurfaceTension>(0.8));
+  dynamics.set_nozzle(turning, {.link_length = 0.1});
+  BentJet bent(8);
+  bent.jet.has_embryo = true;
+  bent.jet.landed = {{.bead = 4}, {.bead = 7}};
+  dynamics.bind(bent.jet);
+  dynamics.prescribe(0.3, bent.jet.y);
+  expect_same(dynamics, bent.jet, {0, 1, 4, 7});
+}
+
+TEST(ChainJacobian, takes_the_papers_surface_tension_as_on_a_straight_chain) {
+  JetDynamics dynamics;
+  dynamics.add(std::make_unique<BendingSurfaceTension>(0.8));
+  JetState jet = BentJet(7, false).jet;
+  const Vec3 direction(1. / 3, 2. / 3, -2. / 3);
+  double at = 0;
+  for (std::size_t k = 0; k < jet.beads(); ++k) {
+    jet.columns().position().set(k, at * direction);
+    at += 0.5 + 0.1 * static_cast<double>(k % 3);
+  }
+  expect_same(dynamics, jet, {});
+}
+
+// df/dt at constant y is the part of it that the nozzle's motion brings about.
+TEST(ChainJacobian, knows_how_the_nozzle_moves) {
+  for (const bool embryo : {false, true}) {
+    JetDynamics dynamics;
+    dynamics.set_rheology(std::make_unique<Maxwell>(3, 2));
+    dynamics.add(std::make_unique<LineSurfaceTension>(0.8));
+    dynamics.set_nozzle(turning, {.link_length = 0.1});
+    BentJet bent(5);
+    bent.jet.has_embryo = embryo;
+    dynamics.bind(bent.jet);
+    std::vector<double>& y = bent.jet.y;
+    const double t = 0.3, h = 1e-5;
+    std::vector<double> later(y.size()), earlier(y.size()), rate(y.size(), 0.0);
+    dynamics.evaluate(t + h, y, later);
+    dynamics.evaluate(t - h, y, earlier);
+    dynamics.prescribe(t, y);
+    dynamics.stiff_part()->linearize(t, y);
+    dynamics.stiff_part()->add_time_derivative(2, rate);
+    double largest = 0;
+    for (std::size_t i = 0; i < y.size(); ++i) {
+      EXPECT_NEAR(rate[i], (later[i] - earlier[i]) / h, 1e-7) << i;
+      largest = std::max(largest, std::abs(rate[i]));
+    }
+    EXPECT_GT(largest, 1);
+  }
+}
+
+// However stiff: G and mu over thirty decades, and a step that is nothing or endless.
+TEST(ChainJacobian, solves_without_overflow) {
+  for (const auto& [modulus, viscosity] :
+       {std::pair{1e12, 1e-9}, {1e12, 1e300}, {1e-12, 1e-12}, {1e12, 2.0}})
+    for (const double eta : {1e-15, 1e-6, 1.0, 1e6}) {
+      if (eta * modulus / (1 + eta * modulus / viscosity) * eta > 1e14) continue;
+      JetDynamics dynamics;
+      dynamics.set_rheology(std::make_unique<Maxwell>(modulus, viscosity));
+      const BentJet bent(6);
+      dynamics.bind(bent.jet);
+      dynamics.stiff_part()->linearize(0, bent.jet.y);
+      dynamics.stiff_part()->factorize(eta);
+      std::vector<double> x(bent.jet.y.size(), 1.0);
+      dynamics.stiff_part()->solve(x);
+      for (const double v : x) EXPECT_TRUE(std::isfinite(v)) << modulus << " " << eta;
+    }
+}
+
+TEST(ChainJacobian, rates_are_those_of_a_uniform_chain) {
+  constexpr std::size_t n = 9;
+  const double l = 0.2, volume = 0.01, mass = 0.03, modulus = 5, viscosity = 100;
+  JetState jet;
+  jet.y.assign(7 * n, 0.0);
+  jet.mass.assign(n, mass), jet.volume.assign(n, volume), jet.charge.assign(n, 0.0);
+  for (std::size_t k = 0; k < n; ++k)
+    jet.columns().position().set(k, {l * static_cast<double>(k), 0, 0});
+  JetDynamics dynamics;
+  dynamics.set_rheology(std::make_unique<Maxwell>(modulus, viscosity));
+  dynamics.bind(jet);
+  dynamics.stiff_part()->linearize(0, jet.y);
+  const auto modes = dynamics.stiff_part()->fastest_modes();
+  EXPECT_NEAR(modes[0].real(), -modulus / viscosity, 1e-12);
+  EXPECT_NEAR(std::abs(modes[1]), 2 * std::sqrt(modulus * volume / (mass * l * l)), 1e-9);
+  EXPECT_NEAR(modes[1].real(), -modulus / viscosity / 2, 1e-12);
+  EXPECT_EQ(modes[2], 0.0);
+}
+
+} // namespace
+} // namespace ehdjet
