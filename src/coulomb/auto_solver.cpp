@@ -25,6 +25,10 @@ public:
     choose(q.size());
     solvers_[chosen_]->add_force(r, q, force);
   }
+  [[nodiscard]] double energy(ConstVec3View r, std::span<const double> q) override {
+    choose(q.size());
+    return solvers_[chosen_]->energy(r, q);
+  }
   [[nodiscard]] std::size_t coincident_pairs() const override {
     return solvers_[chosen_] ? solvers_[chosen_]->coincident_pairs() : 0;
   }
@@ -97,6 +101,9 @@ public:
     if (n > 1) check(r, q, {x, y, z});
     for (std::size_t i = 0; i < n; ++i)
       force.x[i] += x[i], force.y[i] += y[i], force.z[i] += z[i];
+  }
+  [[nodiscard]] double energy(ConstVec3View r, std::span<const double> q) override {
+    return solver_->energy(r, q);
   }
   [[nodiscard]] std::size_t coincident_pairs() const override {
     return solver_->coincident_pairs();

@@ -51,6 +51,7 @@ public:
   ClusterSolver& operator=(const ClusterSolver&) = delete;
 
   void add_force(ConstVec3View r, std::span<const double> q, Vec3View force) final;
+  [[nodiscard]] double energy(ConstVec3View r, std::span<const double> q) final;
   [[nodiscard]] std::size_t coincident_pairs() const final { return coincident_pairs_; }
   [[nodiscard]] CoulombAccuracy accuracy() const final {
     return {.tolerance = parameters_.tolerance};
@@ -101,6 +102,7 @@ private:
   [[nodiscard]] bool is_ordered() const;
   void sort(ConstVec3View r, std::span<const double> q);
   void gather_multipoles();
+  [[nodiscard]] double energy_of(std::uint32_t leaf, std::uint32_t source);
   [[nodiscard]] double force_scale();
   void sample_field(std::uint32_t cluster, std::size_t begin);
 
@@ -111,6 +113,7 @@ private:
   double allowed_ = 0;      ///< error of a force by one pair of clusters
   std::size_t coincident_pairs_ = 0;
   std::vector<double> multipoles_, squares_;
+  std::vector<double> energies_;       ///< of the leaves' charges in the field of all
   std::vector<unsigned char> ignored_; ///< flags of close pairs among samples
 
   struct Sorted; ///< a copy in another order, for charges that do not follow a curve

@@ -1,6 +1,5 @@
 #include "ehdjet/simulation/build.hpp"
 
-#include "ehdjet/coulomb/energy.hpp"
 #include "ehdjet/coulomb/make_solver.hpp"
 #include "ehdjet/events/insertion.hpp"
 #include "ehdjet/events/landing.hpp"
@@ -78,14 +77,23 @@ RefinementRule refinement_rule(const SceneConfig& c) {
   return rule;
 }
 
-double acting_energy(const JetState& jet, std::optional<Embryo> embryo) {
+double acting_energy(const JetState& jet, std::optional<Embryo> embryo,
+                     CoulombSolver& solver) {
   std::vector<double> charge = jet.charge;
   const auto r = jet.columns().position();
   if (jet.has_embryo) charge[1] *= embryo->charge_fraction((r[2] - r[0]).norm());
-  return coulomb_energy(r, charge);
+  return solver.energy(r, charge);
 }
 
-std::unique_ptr<Refinement> build_refinement(const SceneConfig& c) {
+// For energies: what the solver of the forces keeps between its calls stays its own.
+std::unique_ptr<CoulombSolver> second_solver(const Scene& scene) {
+  SolverOptions options = solver_options(*scene.config.coulomb, scene.costs);
+  options.check_every.reset();
+  return make_coulomb_solver(options);
+}
+
+std::unique_ptr<Refinement> build_refinement(const Scene& scene) {
+  const SceneConfig& c = scene.config;
   std::optional<Refinement::Recording> recording;
   if (c.output.refinements != RefinementRecords::none)
     recording = {.elastic_modulus =
@@ -94,8 +102,9 @@ std::unique_ptr<Refinement> build_refinement(const SceneConfig& c) {
   if (c.output.refinements == RefinementRecords::energies) {
     std::optional<Embryo> embryo;
     if (c.nozzle) embryo = Embryo{.link_length = c.nozzle->link_length};
-    recording->coulomb_energy = [embryo](const JetState& jet) {
-      return acting_energy(jet, embryo);
+    const std::shared_ptr<CoulombSolver> solver = second_solver(scene);
+    recording->coulomb_energy = [embryo, solver](const JetState& jet) {
+      return acting_energy(jet, embryo, *solver);
     };
   }
   return std::make_unique<Refinement>(refinement_rule(c), c.refinement->interval,
@@ -236,7 +245,7 @@ std::unique_ptr<Simulation> build_simulation(const Scene& scene) {
     simulation->add(std::make_unique<Insertion>(nozzle_of(*c.nozzle), embryo,
                                                 new_bead_of(*c.nozzle), varicosity_of(c)));
   }
-  if (c.refinement) simulation->add(build_refinement(c));
+  if (c.refinement) simulation->add(build_refinement(scene));
   return simulation;
 }
 
