@@ -213,6 +213,32 @@ std::unique_ptr<JetDynamics> build_dynamics(const Scene& scene) {
   return dynamics;
 }
 
+std::unique_ptr<Budget> build_budget(const Scene& scene) {
+  const SceneConfig& c = scene.config;
+  BudgetTerms terms;
+  if (c.nozzle)
+    terms.source = {.nozzle = nozzle_of(*c.nozzle),
+                    .embryo = {.link_length = c.nozzle->link_length}};
+  const FixedEnds fixed = c.chain ? c.chain->fixed : FixedEnds::none;
+  terms.first_held = fixed == FixedEnds::first || fixed == FixedEnds::both;
+  terms.last_held = fixed == FixedEnds::last || fixed == FixedEnds::both;
+  if (c.field) terms.field = field_strength(c);
+  if (c.gravity) terms.gravity = c.gravity->acceleration;
+  if (carries_stress(c))
+    terms.fluid = {.elastic_modulus = c.viscoelasticity->elastic_modulus,
+                   .viscosity = c.viscoelasticity->viscosity};
+  if (c.surface_tension) {
+    if (c.surface_tension->form == SurfaceTensionForm::line)
+      terms.line_tension = c.surface_tension->coefficient;
+    else
+      terms.surface_tension =
+          std::make_unique<BendingSurfaceTension>(c.surface_tension->coefficient);
+  }
+  if (c.coulomb) terms.coulomb = second_solver(scene);
+  terms.lands = c.collector.has_value(), terms.refines = c.refinement.has_value();
+  return std::make_unique<Budget>(std::move(terms));
+}
+
 std::unique_ptr<Simulation> build_simulation(const Scene& scene) {
   const SceneConfig& c = scene.config;
   auto integrator = std::make_unique<RungeKutta>(butcher_tableau(c.integrator.method),

@@ -105,7 +105,9 @@ void Simulation::run_until(double end_time) {
     if (const auto t = found ? events_[found->index]->scheduled_time() : std::nullopt)
       next_time = CompensatedSum(*t);
     const double t1 = next_time;
+    for (const auto& o : step_observers_) o->begin_step(step, events_);
     show_until(step, t1);
+    for (const auto& o : step_observers_) o->end_step(t1, theta);
     expected_event_ = found || !events_located_ ? never : expected_time(step);
 
     if (found) {
@@ -227,7 +229,7 @@ void Simulation::apply_events(std::size_t located) {
       ++i;
       continue;
     }
-    events_[i]->apply(context);
+    apply(*events_[i], context);
     any = true;
     if (events_[i]->restarts_motion()) {
       after_event_ = i;
@@ -246,6 +248,16 @@ void Simulation::apply_events(std::size_t located) {
   dynamics_->bind(jet_);
   dynamics_->prescribe(jet_.time, jet_.y);
   integrator_->restart();
+}
+
+void Simulation::apply(Event& event, EventContext& context) {
+  if (!step_observers_.empty()) {
+    JetState seen = jet_; // as if what the step went through had ended it
+    for (const auto& e : events_) e->anticipate(jet_.time, seen);
+    for (const auto& o : step_observers_) o->before_event(event, seen);
+  }
+  event.apply(context);
+  for (const auto& o : step_observers_) o->after_event(event, jet_);
 }
 
 void Simulation::fail(double h, const char* why) {

@@ -39,6 +39,9 @@ public:
   void add(std::unique_ptr<Observer> observer) {
     observers_.push_back(std::move(observer));
   }
+  void add(std::unique_ptr<StepObserver> observer) {
+    step_observers_.push_back(std::move(observer));
+  }
   /// Apply events at the end of the step that contains them, as the paper did: first order in
   /// the step size, whatever the method.
   void snap_events_to_step_ends() { events_located_ = false; }
@@ -70,6 +73,7 @@ private:
   void show_until(const DenseStep& step, double end);
   void stop_at(const DenseStep& step, double theta);
   void apply_events(std::size_t located);
+  void apply(Event& event, EventContext& context);
   [[noreturn]] void fail(double h, const char* why);
 
   JetState jet_;
@@ -79,6 +83,7 @@ private:
   StepSizeControl control_;
   std::vector<std::unique_ptr<Event>> events_;
   std::vector<std::unique_ptr<Observer>> observers_;
+  std::vector<std::unique_ptr<StepObserver>> step_observers_;
   StepHook hook_;
   bool events_located_ = true;
 
