@@ -61,7 +61,8 @@ RefinementRule refinement_rule(const SceneConfig& c) {
                .strength = r.weight_strength.value_or(1),
                .shortest = r.shortest.value_or(0),
                .longest = r.longest.value_or(MeshRule{}.longest),
-               .most_links = r.max_beads.value_or(MeshRule{}.most_links)},
+               .most_links = r.max_beads.value_or(MeshRule{}.most_links),
+               .refused_above = r.max_beads.value_or(MeshRule{}.refused_above)},
       .remap =
           r.remap == RefinementRemap::paper ? LinkRemap::paper : LinkRemap::conservative,
       .spread = r.spread == RefinementSpread::monotone_cubic ? Spread::monotone_cubic
@@ -118,19 +119,27 @@ bool carries_stress(const SceneConfig& c) {
          && c.viscoelasticity->viscosity > 0;
 }
 
+/// l_step, or the shortest link of a given chain [m].
+double shortest_link_at_start(const Scene& scene) {
+  if (scene.config.nozzle) return scene.config.nozzle->link_length;
+  const JetState jet = initial_jet(scene);
+  double length = link_length(jet, 1);
+  for (std::size_t k = 2; k < jet.beads(); ++k)
+    length = std::min(length, link_length(jet, k));
+  return length;
+}
+
+/// Below this no force of a link means anything; without such forces beads may pass each other.
+double shortest_link(const Scene& scene) {
+  const SceneConfig& c = scene.config;
+  if (!c.coulomb && !carries_stress(c) && !c.surface_tension) return 0;
+  constexpr double vanished = 1e-6; // of its length at birth
+  return vanished * shortest_link_at_start(scene);
+}
+
 ErrorScale error_scale(const Scene& scene) {
   const SceneConfig& c = scene.config;
-  double length = 0;
-  if (c.integrator.position_scale) {
-    length = *c.integrator.position_scale;
-  } else if (c.nozzle) {
-    length = c.nozzle->link_length;
-  } else {
-    const JetState jet = initial_jet(scene);
-    length = link_length(jet, 1);
-    for (std::size_t k = 2; k < jet.beads(); ++k)
-      length = std::min(length, link_length(jet, k));
-  }
+  const double length = c.integrator.position_scale.value_or(shortest_link_at_start(scene));
   const double speed = c.integrator.velocity_scale;
   ErrorScale scale{.rtol = c.integrator.rtol.value_or(1),
                    .column_scale = {length, length, length, speed, speed, speed},
@@ -246,7 +255,8 @@ std::unique_ptr<Simulation> build_simulation(const Scene& scene) {
   StepLimits limits{.fixed = c.integrator.step,
                     .initial = c.integrator.initial_step,
                     .longest = c.integrator.max_step.value_or(StepLimits{}.longest),
-                    .shortest = c.integrator.min_step};
+                    .shortest = c.integrator.min_step,
+                    .shortest_link = shortest_link(scene)};
   auto simulation = std::make_unique<Simulation>(initial_jet(scene), build_dynamics(scene),
                                                  std::move(integrator), limits);
   if (c.integrator.events == EventPlacement::step_end)

@@ -22,6 +22,9 @@ struct StepLimits {
   std::optional<double> initial;                            ///< first attempt [s]
   double longest = std::numeric_limits<double>::infinity(); ///< [s]
   double shortest = 1e-15; ///< below this the run stops [s]
+  /// A step in which a link becomes shorter than this is too long, and if no step is short enough, the run
+  /// stops; 0: links may vanish [m].
+  double shortest_link = 0;
 };
 
 /// A jet, what moves it, what happens to it and who watches.
@@ -68,6 +71,8 @@ private:
 
   double choose_step();
   double attempt_step(double h);
+  [[nodiscard]] std::optional<std::size_t> vanishing_link() const;
+  [[noreturn]] void fail_at_link(double h, std::size_t bead);
   std::optional<FoundEvent> first_event(const DenseStep& step);
   [[nodiscard]] double expected_time(const DenseStep& step) const;
   void show_until(const DenseStep& step, double end);
