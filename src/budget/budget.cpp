@@ -10,7 +10,8 @@
 namespace ehdjet {
 namespace {
 
-/// Gauss-Legendre on [0, 1]: exact for polynomials of degree 15, squares of the densest output there is.
+/// Gauss-Legendre on [0, 1]: exact for polynomials of degree 15, squares of the densest output
+/// there is.
 struct Node {
   double place, weight;
 };
@@ -80,8 +81,8 @@ void Budget::integrate(double theta) {
   for (const Node& node : nodes) {
     const double at = begin + node.place * width;
     look_into_step(at, step_->time(at));
-    // The link of a bead that has landed within the step pulls with the stress that the step gives it, not
-    // with the one that is on record for it.
+    // The link of a bead that has landed within the step pulls with the stress that the step
+    // gives it, not with the one that is on record for it.
     const auto stress = seen_.columns().stress();
     if (!stress.empty() && !inner_.empty()) {
       for (const LandedBead& b : seen_.landed)

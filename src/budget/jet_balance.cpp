@@ -143,9 +143,9 @@ Vec3 JetBalance::motion(std::size_t held) const {
          + terms_.source->embryo.link_length / segment.norm() * (rate - rate.dot(u) * u);
 }
 
-/// The stress of a link follows its ends: T t.(v_k - v_(k-1)) = d/dt V sigma^2/(2 G) + V sigma^2/mu. The
-/// end that does not move freely does the work that the free end does not account for. The stress of a
-/// link whose own bead rests stays what it is.
+/// The stress of a link follows its ends: T t.(v_k - v_(k-1)) = d/dt V sigma^2/(2 G) + V
+/// sigma^2/mu. The end that does not move freely does the work that the free end does not account
+/// for. The stress of a link whose own bead rests stays what it is.
 void JetBalance::add_fluid(Flows& flows) const {
   const Links& links = stage_.links();
   const auto v = stage_.columns.velocity();
@@ -206,8 +206,8 @@ void JetBalance::add_coulomb(Flows& flows) const {
   }
 }
 
-/// Charge is brought to the embryo against the potential there, and the embryo is led against the field
-/// (its Coulomb force is among those above).
+/// Charge is brought to the embryo against the potential there, and the embryo is led against the
+/// field (its Coulomb force is among those above).
 void JetBalance::add_embryo(Flows& flows) const {
   const auto r = stage_.columns.position(), v = stage_.columns.velocity();
   Vec3 nozzle = v[0];

@@ -127,7 +127,8 @@ void ClusterSolver::compute(ConstVec3View r, std::span<const double> q, Vec3View
   coincident_pairs_ = charges_.add_close_pairs(r, q, force);
 }
 
-// Both solvers alike, as a treecode: each leaf's charges in the potentials of far clusters' multipoles.
+// Both solvers alike, as a treecode: each leaf's charges in the potentials of far clusters'
+// multipoles.
 double ClusterSolver::energy(ConstVec3View r, std::span<const double> q) {
   const std::size_t n = q.size();
   EHDJET_EXPECTS(r.x.size() == n && r.y.size() == n && r.z.size() == n);
@@ -159,8 +160,9 @@ double ClusterSolver::energy(ConstVec3View r, std::span<const double> q) {
   return charges_.energy(sum / 2); // each pair was met from both sides
 }
 
-// Of the charges of a leaf in the field of a cluster. A cluster is far if the tail of its series is below
-// the tolerance relative to its potential: the energies of pairs of like charges do not cancel.
+// Of the charges of a leaf in the field of a cluster. A cluster is far if the tail of its series
+// is below the tolerance relative to its potential: the energies of pairs of like charges do not
+// cancel.
 double ClusterSolver::energy_of(std::uint32_t leaf, std::uint32_t source) {
   const Cluster &target = tree_.clusters()[leaf], &cluster = tree_.clusters()[source];
   const ChargeColumns c = charges_.columns();

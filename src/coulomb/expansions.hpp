@@ -384,8 +384,8 @@ void multipole_to_charges(const ExpansionNumbers& t, const ChargeColumns& c, Fie
   }
 }
 
-/// sum of q_i phi(r_i), phi = sum_l (M_l^0 I_l^0 + 2 sum_(m>0) Re(conj(M_l^m) I_l^m)) with the irregular
-/// harmonics I_l^m = R_l^m(d)/d^(2l+1).
+/// sum of q_i phi(r_i), phi = sum_l (M_l^0 I_l^0 + 2 sum_(m>0) Re(conj(M_l^m) I_l^m)) with the
+/// irregular harmonics I_l^m = R_l^m(d)/d^(2l+1).
 template <class Simd>
 double energy_in_multipole(const ExpansionNumbers& t, const ChargeColumns& c,
                            std::size_t begin, std::size_t end, const double* centre,

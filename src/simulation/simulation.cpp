@@ -185,8 +185,8 @@ double Simulation::attempt_step(double h) {
   return h;
 }
 
-/// A bead that runs into its upstream neighbour in the step just attempted, between whose ends beads are
-/// taken to fly straight. Those that rest or have passed the collector do not count.
+/// A bead that runs into its upstream neighbour in the step just attempted, between whose ends
+/// beads are taken to fly straight. Those that rest or have passed the collector do not count.
 std::optional<std::size_t> Simulation::vanishing_link() const {
   const double limit = limits_.shortest_link * limits_.shortest_link;
   if (limit == 0) return std::nullopt;

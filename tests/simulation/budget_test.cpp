@@ -117,8 +117,8 @@ TEST(Budget, has_columns_for_what_the_scene_has_and_no_others) {
   EXPECT_FALSE(has(jet, "held_work"));
 }
 
-// Every kind of force is in the balance: one that is off by a thousandth (gravity, weak as it is, by a
-// hundredth) leaves a residual.
+// Every kind of force is in the balance: one that is off by a thousandth (gravity, weak as it is,
+// by a hundredth) leaves a residual.
 TEST(Budget, does_not_close_if_a_force_is_not_what_its_energy_says) {
   const std::pair<const char*, std::function<void(SceneConfig&)>> wrong[] = {
       {"field", [](SceneConfig& c) { *c.field->strength *= 1.001; }},

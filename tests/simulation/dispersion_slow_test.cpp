@@ -10,8 +10,8 @@ namespace {
 
 using namespace test;
 
-// With a tension that relaxes: Bessel functions of an order near 30 (validated against an independent
-// program to 4e-4 and 1.3e-3, the effect of the ends).
+// With a tension that relaxes: Bessel functions of an order near 30 (validated against an
+// independent program to 4e-4 and 1.3e-3, the effect of the ends).
 TEST(Dispersion, a_relaxing_tension_slows_or_stops_the_growth) {
   struct Case {
     double stress, tolerance;

@@ -68,7 +68,8 @@ TEST(Dispersion, bent_chains_grow_at_the_rates_of_theory_with_every_solver) {
         const double agreement = exact ? 1e-6 : 1e-4; // with the other program
         EXPECT_NEAR(a[i] / then.amplitude[i], 1, agreement) << solver << wavelengths[i];
       }
-      // Nothing pushes out of the plane but what the solver gets wrong, and that grows as all else does.
+      // Nothing pushes out of the plane but what the solver gets wrong, and that grows as all
+      // else does.
       const double out = largest(along(axes[2], r));
       if (exact) {
         EXPECT_EQ(out, 0);

@@ -13,7 +13,8 @@
 
 namespace ehdjet::test {
 
-// A straight chain of N beads at rest, spacing l, displaced by cosines of all these wavelengths (in beads) at
+// A straight chain of N beads at rest, spacing l, displaced by cosines of all these wavelengths
+// (in beads) at
 // once: each grows as cosh(s t) with s^2 = 2 Gamma^2 C(kappa) - (4/(m l)) T_st sin^2(kappa/2).
 inline constexpr std::array<double, 5> wavelengths{2, 4, 10, 20, 50};
 inline constexpr std::size_t centre = 400, beads = 2 * centre + 1;

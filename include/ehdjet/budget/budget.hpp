@@ -15,14 +15,15 @@
 
 namespace ehdjet {
 
-/// Energy and momentum of a jet over a run: what it has, what has come in and gone out, and what does
-/// not add up (model 8).
+/// Energy and momentum of a jet over a run: what it has, what has come in and gone out, and what
+/// does not add up (model 8).
 ///
 ///     residual = E(t) - E(0) - sum over channels of the integrals of their flows and their jumps
 ///
-/// Flows are integrated by Gauss-Legendre quadrature over the dense output of each step, jumps are energies
-/// after less before each event. Neither is made of the balance, so the residual shows every
-/// force that does not fit its energy, up to the errors of the steps and of the Coulomb solver.
+/// Flows are integrated by Gauss-Legendre quadrature over the dense output of each step, jumps
+/// are energies after less before each event. Neither is made of the balance, so the residual
+/// shows every force that does not fit its energy, up to the errors of the steps and of the
+/// Coulomb solver.
 ///
 /// The jet is the same with or without it, bit for bit. Does not survive a change of the jet
 /// other than by the simulation it is added to.

@@ -81,10 +81,11 @@ struct JetEnergies {
 ///
 ///     dE/dt = sum of the channels' energies,  dP/dt = sum of their momenta
 ///
-/// It is worked out from the model, not from the forces that move the jet, and so a check on them. Beads
-/// that do not move freely (nozzle, embryo, landed, held) exert forces and do work.
+/// It is worked out from the model, not from the forces that move the jet, and so a check on
+/// them. Beads that do not move freely (nozzle, embryo, landed, held) exert forces and do work.
 ///
-/// cost : `flows` O(n), and O(n) per bead that does not move freely; `energies` what the Coulomb solver's energy costs
+/// cost : `flows` O(n), and O(n) per bead that does not move freely; `energies` what the Coulomb
+///        solver's energy costs
 class JetBalance {
 public:
   explicit JetBalance(BudgetTerms terms)

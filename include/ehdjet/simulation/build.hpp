@@ -20,8 +20,8 @@ std::unique_ptr<Simulation> build_simulation(const Scene& scene);
 /// The right-hand side alone.
 std::unique_ptr<JetDynamics> build_dynamics(const Scene& scene);
 
-/// Energy and momentum of this scene's jet, for a simulation and for whoever writes them. Add it to the
-/// simulation before it runs.
+/// Energy and momentum of this scene's jet, for a simulation and for whoever writes them. Add it
+/// to the simulation before it runs.
 std::unique_ptr<Budget> build_budget(const Scene& scene);
 
 /// What a scene asks of the Coulomb solver.

@@ -22,8 +22,8 @@ struct StepLimits {
   std::optional<double> initial;                            ///< first attempt [s]
   double longest = std::numeric_limits<double>::infinity(); ///< [s]
   double shortest = 1e-15; ///< below this the run stops [s]
-  /// A step in which a link becomes shorter than this is too long, and if no step is short enough, the run
-  /// stops; 0: links may vanish [m].
+  /// A step in which a link becomes shorter than this is too long, and if no step is short
+  /// enough, the run stops; 0: links may vanish [m].
   double shortest_link = 0;
 };
 
