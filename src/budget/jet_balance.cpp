@@ -38,6 +38,28 @@ Surroundings surroundings(ConstVec3View r, std::span<const double> q, std::size_
   return {constants::coulomb * potential, constants::coulomb * Vec3(ex, ey, ez)};
 }
 
+/// Energy of the pairs that have a member in [begin, end) [J].
+double energy_of_some(ConstVec3View r, std::span<const double> q, std::size_t begin,
+                      std::size_t end) {
+  const double *x = r.x.data(), *y = r.y.data(), *z = r.z.data(), *charge = q.data();
+  double energy = 0;
+  for (std::size_t i = begin; i < end; ++i) {
+    const double xi = x[i], yi = y[i], zi = z[i];
+    const auto potential = [=](std::size_t first, std::size_t last) {
+      double sum = 0;
+#pragma omp simd reduction(+ : sum)
+      for (std::size_t j = first; j < last; ++j) {
+        const double dx = xi - x[j], dy = yi - y[j], dz = zi - z[j];
+        const double square = dx * dx + dy * dy + dz * dz;
+        sum += square > 0 ? charge[j] / std::sqrt(square) : 0.0;
+      }
+      return sum;
+    };
+    energy += q[i] * (potential(0, i) + potential(end, r.size()));
+  }
+  return constants::coulomb * energy;
+}
+
 } // namespace
 
 void JetBalance::prescribe(JetState& jet) const {
@@ -76,6 +98,40 @@ void JetBalance::look_at(const JetState& jet) {
 }
 
 JetEnergies JetBalance::energies(const JetState& jet) {
+  JetEnergies e = all_but_coulomb(jet);
+  if (terms_.coulomb) e.coulomb = terms_.coulomb->energy(jet.columns().position(), charge_);
+  return e;
+}
+
+Flow JetBalance::jump(const JetState& before, const JetState& after) {
+  const JetEnergies a = all_but_coulomb(before), b = all_but_coulomb(after);
+  Flow flow{.energy = b.total() - a.total(), .momentum = b.momentum - a.momentum};
+  if (terms_.coulomb) flow.energy += coulomb_jump(before, after);
+  return flow;
+}
+
+/// Beads at both ends of the chain that have kept place and charge bring no change but with those
+/// between.
+double JetBalance::coulomb_jump(const JetState& before, const JetState& after) {
+  look_at(before);
+  charge_before_.swap(charge_);
+  look_at(after);
+  const auto r = before.columns().position(), s = after.columns().position();
+  const std::size_t m = before.beads(), n = after.beads(), shorter = std::min(m, n);
+  const auto same = [&](std::size_t i, std::size_t j) {
+    return r[i] == s[j] && charge_before_[i] == charge_[j];
+  };
+  std::size_t head = 0, tail = 0;
+  while (head < shorter && same(head, head)) ++head;
+  while (head + tail < shorter && same(m - 1 - tail, n - 1 - tail)) ++tail;
+  constexpr std::size_t few = 32;
+  if (m + n - 2 * (head + tail) > few)
+    return terms_.coulomb->energy(s, charge_) - terms_.coulomb->energy(r, charge_before_);
+  return energy_of_some(s, charge_, head, n - tail)
+         - energy_of_some(r, charge_before_, head, m - tail);
+}
+
+JetEnergies JetBalance::all_but_coulomb(const JetState& jet) {
   look_at(jet);
   const auto c = jet.columns();
   const auto r = c.position(), v = c.velocity();
@@ -101,7 +157,6 @@ JetEnergies JetBalance::energies(const JetState& jet) {
       e.surface +=
           2 * *terms_.line_tension * std::sqrt(std::numbers::pi * volume * links.length[k]);
   }
-  if (terms_.coulomb) e.coulomb = terms_.coulomb->energy(r, charge_);
   return e;
 }
 

@@ -54,8 +54,7 @@ private:
   void advance(double t, double theta);
   void integrate(double theta);
   void pass(double landing_time);
-  void look_into_step(double theta, double t);
-  void jump(Channel channel, const JetEnergies& before, const JetEnergies& after);
+  void look_into_step(double theta, double t, double past);
   template <class Add>
   void list(const JetEnergies& now, const Add& add) const;
 
@@ -70,7 +69,7 @@ private:
   std::vector<double> inner_;  // times of landings that do not end the step, ascending
   std::size_t next_inner_ = 0; // of them
   JetState seen_;              // inside a step
-  JetEnergies before_;         // an event
+  JetState before_;            // an event
 };
 
 } // namespace ehdjet

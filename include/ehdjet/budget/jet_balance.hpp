@@ -96,9 +96,13 @@ public:
   void prescribe(JetState& jet) const;
   [[nodiscard]] JetEnergies energies(const JetState& jet);
   [[nodiscard]] Flows flows(const JetState& jet);
+  /// What an event has brought in. O(n) if it has left nearly all beads where they were.
+  [[nodiscard]] Flow jump(const JetState& before, const JetState& after);
 
 private:
   void look_at(const JetState& jet);
+  [[nodiscard]] JetEnergies all_but_coulomb(const JetState& jet);
+  [[nodiscard]] double coulomb_jump(const JetState& before, const JetState& after);
   [[nodiscard]] Channel support(std::size_t bead) const;
   [[nodiscard]] Vec3 motion(std::size_t held) const;
   void add_fluid(Flows& flows) const;
@@ -110,6 +114,7 @@ private:
   BudgetTerms terms_;
   Stage stage_;
   std::vector<double> charge_; // as they act
+  std::vector<double> charge_before_;
   std::vector<char> free_;
   std::vector<char> landed_;
   std::vector<std::size_t> held_; // beads that do not move freely
