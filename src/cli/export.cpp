@@ -19,7 +19,7 @@ namespace {
 struct Options {
   std::string run, output;
   bool observables = false, beads = false, deposit = false, xyz = false, vtk = false;
-  bool refinements = false, resolving_power = false;
+  bool refinements = false, budget = false, resolving_power = false;
   std::optional<double> time, from;
   bool force = false;
 };
@@ -39,6 +39,7 @@ void run_export(const Options& options) {
   if (options.beads) export_beads(run, options.time, output);
   if (options.deposit) export_deposit(run, output);
   if (options.refinements) export_refinements(run, output);
+  if (options.budget) export_budget(run, output);
   if (options.resolving_power) export_resolving_power(run, options.from, output);
   if (options.xyz) export_xyz(run, options.time, output);
 }
@@ -59,6 +60,8 @@ void add_export_command(CLI::App& app) {
   format->add_flag("--deposit", options->deposit, "CSV: the deposited fibre");
   format->add_flag("--refinements", options->refinements,
                    "CSV: what each mesh refinement did");
+  format->add_flag("--budget", options->budget,
+                   "CSV: energy and momentum over time, and what does not add up");
   CLI::Option* power =
       format->add_flag("--resolving-power", options->resolving_power,
                        "CSV: mean and least resolving power link_length/l along the jet");

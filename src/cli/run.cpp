@@ -38,7 +38,8 @@ struct Interrupted : RunError {
   using RunError::RunError;
 };
 
-void add_observers(Simulation& simulation, RunFile& file, const SceneConfig& config) {
+void add_observers(Simulation& simulation, RunFile& file, const Scene& scene) {
+  const SceneConfig& config = scene.config;
   if (config.output.observables)
     simulation.add(file.observables(*config.output.observables,
                                     config.coulomb && config.coulomb->check_every));
@@ -51,6 +52,11 @@ void add_observers(Simulation& simulation, RunFile& file, const SceneConfig& con
   if (config.output.resolving_power)
     simulation.add(
         file.resolving_power(*config.output.resolving_power, config.nozzle->link_length));
+  if (config.output.budget) {
+    auto budget = build_budget(scene);
+    simulation.add(file.budget(*config.output.budget, *budget));
+    simulation.add(std::move(budget));
+  }
 }
 
 /// What the solver has done, unless it is the direct sum, of which there is nothing to tell.
@@ -134,7 +140,7 @@ void run(const RunOptions& options) {
                 .scene_resolved = resolved_toml(scene.config),
                 .environment = environment()},
                scene.config.output.flush);
-  add_observers(*simulation, file, scene.config);
+  add_observers(*simulation, file, scene);
 
   const double end = scene.config.run.end_time;
   if (!options.quiet)

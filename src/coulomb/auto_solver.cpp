@@ -24,6 +24,10 @@ public:
     choose(q.size());
     solvers_[chosen_]->add_force(r, q, force);
   }
+  [[nodiscard]] double energy(ConstVec3View r, std::span<const double> q) override {
+    choose(q.size());
+    return solvers_[chosen_]->energy(r, q);
+  }
   [[nodiscard]] std::size_t coincident_pairs() const override {
     return solvers_[chosen_] ? solvers_[chosen_]->coincident_pairs() : 0;
   }

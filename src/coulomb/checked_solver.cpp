@@ -30,6 +30,9 @@ public:
     for (std::size_t i = 0; i < n; ++i)
       force.x[i] += x[i], force.y[i] += y[i], force.z[i] += z[i];
   }
+  [[nodiscard]] double energy(ConstVec3View r, std::span<const double> q) override {
+    return solver_->energy(r, q);
+  }
   [[nodiscard]] std::size_t coincident_pairs() const override {
     return solver_->coincident_pairs();
   }

@@ -1,5 +1,6 @@
 #include "cluster_solver.hpp"
 
+#include "ehdjet/core/compensated_sum.hpp"
 #include "ehdjet/core/error.hpp"
 
 #include <omp.h>
@@ -137,6 +138,72 @@ void ClusterSolver::compute(ConstVec3View r, std::span<const double> q, Vec3View
     charges_.add_forces(team, n * thread / team, n * (thread + 1) / team, force);
   }
   coincident_pairs_ = charges_.add_close_pairs(r, q, force);
+}
+
+// Both solvers alike, as a treecode: each leaf's charges in the potentials of far clusters'
+// multipoles.
+double ClusterSolver::energy(ConstVec3View r, std::span<const double> q) {
+  const std::size_t n = q.size();
+  EHDJET_EXPECTS(r.x.size() == n && r.y.size() == n && r.z.size() == n);
+  EHDJET_EXPECTS(n < (std::size_t{1} << 31U));
+  if (n == 0) return 0;
+  const int threads = n < parallel_from ? 1 : omp_get_max_threads();
+  charges_.reserve(n, static_cast<std::size_t>(threads));
+  charges_.load(r, q);
+  tree_.shape(n, parameters_.leaf);
+  tree_.bound(charges_.columns());
+  if (!is_ordered()) {
+    sort(r, q);
+    const auto& [x, y, z, charge, fx, fy, fz] = sorted_->columns;
+    charges_.load({x, y, z}, charge);
+    tree_.bound(charges_.columns());
+  }
+  const std::size_t numbers = set_ * tree_.clusters().size();
+  if (multipoles_.size() < numbers) multipoles_.resize(numbers);
+  const auto leaves = tree_.leaves();
+  energies_.resize(leaves.size());
+#pragma omp parallel num_threads(threads) if (threads > 1)
+  {
+    gather_multipoles();
+#pragma omp for schedule(dynamic, 4)
+    for (std::size_t i = 0; i < leaves.size(); ++i) energies_[i] = energy_of(leaves[i], 0);
+  }
+  CompensatedSum sum;
+  for (const double e : energies_) sum += e;
+  return charges_.energy(sum / 2); // each pair was met from both sides
+}
+
+// Of the charges of a leaf in the field of a cluster. A cluster is far if the tail of its series
+// is below the tolerance relative to its potential: the energies of pairs of like charges do not
+// cancel.
+double ClusterSolver::energy_of(std::uint32_t leaf, std::uint32_t source) {
+  const Cluster &target = tree_.clusters()[leaf], &cluster = tree_.clusters()[source];
+  const ChargeColumns c = charges_.columns();
+  constexpr double unit = ExpansionKernel::unit;
+  const double theta =
+      cluster.radius / (between(cluster.centre, target.centre).norm() - target.radius);
+  if (theta >= 0 && theta < parameters_.opening
+      && power(theta, parameters_.order + 1) <= (1 - theta) * parameters_.tolerance)
+    return unit
+           * kernel_.energy_in_multipole(numbers_, c, target.begin, target.end,
+                                         cluster.centre, multipole(source));
+  if (!cluster.is_leaf())
+    return energy_of(leaf, cluster.child) + energy_of(leaf, cluster.child + 1);
+  double sum = 0;
+  const std::size_t n = tree_.charges();
+  const std::size_t last = std::min<std::size_t>(cluster.end, n);
+  for (std::size_t i = target.begin; i < std::min<std::size_t>(target.end, n); ++i) {
+    const double x = c.x[i], y = c.y[i], z = c.z[i];
+    double potential = 0;
+#pragma omp simd reduction(+ : potential)
+    for (std::size_t j = cluster.begin; j < last; ++j) {
+      const double dx = x - c.x[j], dy = y - c.y[j], dz = z - c.z[j];
+      const double square = dx * dx + dy * dy + dz * dz;
+      potential += square > 0 ? c.q[j] / std::sqrt(square) : 0.0;
+    }
+    sum += c.q[i] * potential;
+  }
+  return sum;
 }
 
 std::string ClusterSolver::description() const {

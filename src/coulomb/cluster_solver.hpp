@@ -45,6 +45,7 @@ public:
   ClusterSolver& operator=(const ClusterSolver&) = delete;
 
   void add_force(ConstVec3View r, std::span<const double> q, Vec3View force) final;
+  [[nodiscard]] double energy(ConstVec3View r, std::span<const double> q) final;
   [[nodiscard]] std::size_t coincident_pairs() const final { return coincident_pairs_; }
   [[nodiscard]] CoulombAccuracy accuracy() const final {
     return {.tolerance = parameters_.tolerance, .norm = parameters_.norm};
@@ -102,6 +103,7 @@ private:
   void sort(ConstVec3View r, std::span<const double> q);
   void gather_multipoles();
   void sample_forces();
+  [[nodiscard]] double energy_of(std::uint32_t leaf, std::uint32_t source);
   [[nodiscard]] double force_scale();
   void sample_field(std::uint32_t cluster, std::size_t begin);
 
@@ -113,6 +115,7 @@ private:
   std::size_t coincident_pairs_ = 0;
   std::vector<double> multipoles_;
   std::vector<double> squares_;        ///< of sampled forces, without k_C
+  std::vector<double> energies_;       ///< of the leaves' charges in the field of all
   std::vector<unsigned char> ignored_; ///< flags of close pairs among samples
 
   struct Sorted; ///< a copy in another order, for charges that do not follow a curve

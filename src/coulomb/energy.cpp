@@ -3,6 +3,7 @@
 #include "ehdjet/core/compensated_sum.hpp"
 #include "ehdjet/core/constants.hpp"
 #include "ehdjet/core/error.hpp"
+#include "ehdjet/coulomb/solver.hpp"
 
 #include <cmath>
 #include <cstddef>
@@ -30,6 +31,10 @@ double coulomb_energy(ConstVec3View r, std::span<const double> q) {
   CompensatedSum energy;
   for (std::size_t i = 0; i < n; ++i) energy += q[i] * potential[i];
   return constants::coulomb * energy;
+}
+
+double CoulombSolver::energy(ConstVec3View r, std::span<const double> q) {
+  return coulomb_energy(r, q);
 }
 
 } // namespace ehdjet

@@ -47,6 +47,11 @@ struct ExpansionKernel {
   void (*multipole_to_charges)(const ExpansionNumbers&, const ChargeColumns&, FieldColumns,
                                std::size_t begin, std::size_t end, const double* centre,
                                const double* gradient);
+  /// Sum over charges [begin, end), multiples of `padding`, of q times the potential of a
+  /// multipole.
+  double (*energy_in_multipole)(const ExpansionNumbers&, const ChargeColumns&,
+                                std::size_t begin, std::size_t end, const double* centre,
+                                const double* multipole);
 };
 
 ExpansionKernel portable_expansion_kernel();

@@ -388,6 +388,35 @@ void multipole_to_charges(const ExpansionNumbers& t, const ChargeColumns& c, Fie
   }
 }
 
+/// sum of q_i phi(r_i), phi = sum_l (M_l^0 I_l^0 + 2 sum_(m>0) Re(conj(M_l^m) I_l^m)) with the
+/// irregular harmonics I_l^m = R_l^m(d)/d^(2l+1).
+template <class Simd>
+double energy_in_multipole(const ExpansionNumbers& t, const ChargeColumns& c,
+                           std::size_t begin, std::size_t end, const double* centre,
+                           const double* multipole) {
+  using Vector = VectorOf<Simd>;
+  const int p = t.order;
+  double weighted[most_coefficients];
+  for (int l = 0; l <= p; ++l)
+    for (int i = re(l, 0); i < re(l + 1, 0); ++i)
+      weighted[i] = (i == re(l, 0) ? 1 : 2) * multipole[i];
+  Vector sum = Vector{}, r[most_coefficients];
+  for (std::size_t i = begin; i < end; i += Simd::lanes) {
+    const Vector x = unit_coordinate<Simd>(c.x, i, centre[0]),
+                 y = unit_coordinate<Simd>(c.y, i, centre[1]),
+                 z = unit_coordinate<Simd>(c.z, i, centre[2]);
+    const Vector inverse = 1.0 / (x * x + y * y + z * z);
+    harmonics<Simd>(t, p, x * inverse, y * inverse, z * inverse, r);
+    Vector potential = Vector{};
+    for (int k = 0; k < re(p + 1, 0); ++k) potential += weighted[k] * r[k];
+    sum +=
+        *reinterpret_cast<const Vector*>(c.q + i) * square_root<Simd>(inverse) * potential;
+  }
+  double total = 0;
+  for (int lane = 0; lane < Simd::lanes; ++lane) total += sum[lane];
+  return total;
+}
+
 template <class Simd>
 ExpansionKernel expansion_kernel() {
   return {static_cast<std::size_t>(Simd::lanes),
@@ -397,7 +426,8 @@ ExpansionKernel expansion_kernel() {
           shift<Simd, true>,
           shift<Simd, false>,
           multipole_gradient<Simd>,
-          multipole_to_charges<Simd>};
+          multipole_to_charges<Simd>,
+          energy_in_multipole<Simd>};
 }
 
 #undef EHDJET_INLINE

@@ -74,6 +74,11 @@ void ScaledCharges::load(ConstVec3View r, std::span<const double> q) {
     column(0)[i] = padding_distance * static_cast<double>(i - n + 1);
   // f = q q / r^2 is unscaled by 2^(2 p_r - 2 p_q); the whole of it may be out of range.
   root_unscale_ = std::ldexp(1, std::clamp(p_r - p_q, -1000, 1000));
+  energy_exponent_ = p_r - 2 * p_q;
+}
+
+double ScaledCharges::energy(double scaled) const {
+  return std::ldexp(constants::coulomb * scaled, energy_exponent_);
 }
 
 FieldColumns ScaledCharges::field(std::size_t thread) {

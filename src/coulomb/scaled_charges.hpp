@@ -34,6 +34,9 @@ public:
   /// What a field of these columns is multiplied with, squared, to be in SI units but for k_C.
   [[nodiscard]] double root_unscale() const { return root_unscale_; }
 
+  /// A sum of q q/|r - r| of these columns in SI units, k_C included [J].
+  [[nodiscard]] double energy(double scaled) const;
+
   /// force += k_C q times the sum of the fields of `team` threads, for charges [begin, end).
   void add_forces(std::size_t team, std::size_t begin, std::size_t end, Vec3View force);
   /// What the kernels have skipped. Returns the number of coincident pairs.
@@ -48,6 +51,7 @@ private:
 
   std::size_t tile_, size_ = 0, lines_ = 0; ///< lines_: cache lines per column
   double root_unscale_ = 1;
+  int energy_exponent_ = 0;          ///< energies of these columns are larger by 2^-this
   std::vector<CacheLine> charges_;   ///< x, y, z, q
   std::vector<CacheLine> fields_;    ///< x, y, z of each thread
   std::vector<unsigned char> close_; ///< per tile of targets

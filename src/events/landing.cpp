@@ -76,6 +76,10 @@ void Landing::anticipate(double t, JetState& jet) const {
   }
 }
 
+void Landing::list_inner_times(std::vector<double>& times) const {
+  for (const Arrival& a : passing_) times.push_back(a.time);
+}
+
 void Landing::apply(EventContext& context) {
   const auto arrived = arrivals(context.jet);
   located_.reset(), passing_.clear();

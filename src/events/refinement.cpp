@@ -1,7 +1,10 @@
 #include "ehdjet/events/refinement.hpp"
 
+#include "ehdjet/core/error.hpp"
+
 #include <algorithm>
 #include <cmath>
+#include <fmt/format.h>
 #include <utility>
 
 namespace ehdjet {
@@ -32,6 +35,16 @@ JetTotals totals(const JetState& jet, const Refinement::Recording& recording) {
   sum.mass = mass, sum.charge = charge, sum.volume = volume;
   if (recording.coulomb_energy) sum.coulomb_energy = recording.coulomb_energy(jet);
   return sum;
+}
+
+/// A mesh that is refused does not know when.
+template <class Cut>
+auto at_time(double t, const Cut& cut) {
+  try {
+    return cut();
+  } catch (const RunError& e) {
+    throw RunError(fmt::format("at t = {:.9g} s: {}", t, e.what()));
+  }
 }
 
 JetTotals difference(const JetTotals& after, const JetTotals& before) {
@@ -66,7 +79,7 @@ std::optional<double> Refinement::locate(const DenseStep& step) {
     const double theta = std::min((next.next() - step.t0) / step.h, 1.0);
     probe_ = step.jet;
     step.state(theta, probe_.y);
-    if (!changes(probe_)) continue;
+    if (!at_time(next.next(), [&] { return changes(probe_); })) continue;
     located_ = next.next();
     return theta;
   }
@@ -89,7 +102,7 @@ void Refinement::apply(EventContext& context) {
   const JetTotals before = recording_ ? totals(jet, *recording_) : JetTotals{};
   const std::size_t beads_before = jet.links();
   const auto joined = rule_.coarsen ? coarsen_jet(jet, rule_) : std::nullopt;
-  const auto cut = refine_jet(jet, rule_);
+  const auto cut = at_time(jet.time, [&] { return refine_jet(jet, rule_); });
   if (!joined && !cut) return;
   auto& count = context.statistics.refinements;
   count = count.value_or(0) + 1;

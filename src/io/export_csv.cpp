@@ -87,6 +87,22 @@ void export_refinements(const RunReader& run, TextOutput& output) {
   output.close();
 }
 
+void export_budget(const RunReader& run, TextOutput& output) {
+  const BudgetTable t = run.budget();
+  output.print("time_s");
+  for (std::size_t c = 0; c < t.names.size(); ++c) {
+    const std::string& unit = t.units[c];
+    output.print(",{}{}", t.names[c], unit == "J" ? "_j" : unit == "1" ? "" : "_kg_m_s");
+  }
+  output.print("\n");
+  for (std::size_t i = 0; i < t.time.size(); ++i) {
+    output.print("{:.17g}", t.time[i]);
+    for (const auto& column : t.columns) output.print(",{:.17g}", column[i]);
+    output.print("\n");
+  }
+  output.close();
+}
+
 void export_resolving_power(const RunReader& run, std::optional<double> from,
                             TextOutput& output) {
   const ResolvingPowerTable t = run.resolving_power();

@@ -30,6 +30,11 @@ std::unique_ptr<Observer> RunFile::refinements(bool with_coulomb_energy) {
   return make_refinements(*writer_, with_coulomb_energy);
 }
 
+std::unique_ptr<Observer> RunFile::budget(double interval, Accounts& accounts) {
+  EHDJET_EXPECTS(interval > 0);
+  return make_account_book(*writer_, interval, accounts);
+}
+
 std::unique_ptr<Observer> RunFile::resolving_power(double interval, double link_length) {
   EHDJET_EXPECTS(interval > 0 && link_length > 0);
   return make_resolving_power(*writer_, interval, link_length);

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <limits>
 #include <map>
+#include <sstream>
 #include <system_error>
 
 #include "hdf5.hpp"
@@ -158,6 +159,9 @@ bool RunReader::has_deposit() const {
 bool RunReader::has_refinements() const {
   return impl_->has("refinements");
 }
+bool RunReader::has_budget() const {
+  return impl_->has("budget");
+}
 bool RunReader::has_resolving_power() const {
   return impl_->has("resolving_power");
 }
@@ -256,6 +260,27 @@ RefinementTable RunReader::refinements() const {
                            .coulomb_energy = with_coulomb ? column("coulomb_energy_change")
                                                           : std::vector<double>{},
                            .worst_link = column("worst_link")};
+  });
+}
+
+BudgetTable RunReader::budget() const {
+  impl_->require("budget", "budget of energy and momentum", "output.budget");
+  return impl_->guard([&] {
+    Impl& file = *impl_;
+    const Handle group(H5Gopen2(file.file, "budget", H5P_DEFAULT), H5Gclose);
+    const hsize_t rows = file.common_length("budget");
+    BudgetTable table{.time = file.rows<double>("budget/time", 0, rows),
+                      .names = {},
+                      .units = {},
+                      .columns = {}};
+    std::istringstream names(hdf5::read_text_attribute(group, "columns"));
+    for (std::string name; std::getline(names, name, ',');) {
+      const std::string path = "budget/" + name;
+      table.names.push_back(name);
+      table.units.push_back(hdf5::read_text_attribute(file.data_set(path), "unit"));
+      table.columns.push_back(file.rows<double>(path, 0, rows));
+    }
+    return table;
   });
 }
 

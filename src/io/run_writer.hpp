@@ -77,6 +77,8 @@ std::unique_ptr<Observer> make_observables(RunWriter& writer, double interval,
 std::unique_ptr<Observer> make_frames(RunWriter& writer, double interval, bool with_stress);
 std::unique_ptr<Observer> make_deposit(RunWriter& writer);
 std::unique_ptr<Observer> make_refinements(RunWriter& writer, bool with_coulomb_energy);
+std::unique_ptr<Observer> make_account_book(RunWriter& writer, double interval,
+                                            Accounts& accounts);
 std::unique_ptr<Observer> make_resolving_power(RunWriter& writer, double interval,
                                                double link_length);
 

@@ -31,4 +31,11 @@ double Embryo::charge_fraction(double d) const {
   return (1 - std::cos(std::numbers::pi * std::clamp(ramp, 0.0, 1.0))) / 2;
 }
 
+double Embryo::charge_fraction_slope(double d) const {
+  const double width = release_distance() - creation_distance();
+  const double ramp = (d - creation_distance()) / width;
+  return std::numbers::pi / (2 * width)
+         * std::sin(std::numbers::pi * std::clamp(ramp, 0.0, 1.0));
+}
+
 } // namespace ehdjet

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fmt/format.h>
 
 namespace ehdjet {
 namespace {
@@ -59,7 +60,19 @@ std::vector<double> link_density(const JetString& string, const JetState& jet,
 }
 
 std::size_t links_needed(double number) {
-  return static_cast<std::size_t>(std::ceil(number * (1 - round_off)));
+  constexpr double countable = 1e18;
+  return static_cast<std::size_t>(std::ceil(std::min(number, countable) * (1 - round_off)));
+}
+
+void refuse_slips(std::size_t links, const MeshRule& rule) {
+  if (links <= rule.refused_above) return;
+  constexpr double per_bead = 1.2e-6; // [GB], state and stages of an integrator
+  const auto number = static_cast<double>(links);
+  throw RunError(fmt::format(
+      "refinement.length = {:g} m would cut the jet into {:.3g} links, more than {:.0e}, "
+      "and take about {:.2g} GB: give "
+      "a larger length (in metres), or bound the number by refinement.max_beads",
+      rule.length, number, static_cast<double>(rule.refused_above), per_bead * number));
 }
 
 std::optional<std::size_t> new_links(double number, std::size_t kept,
@@ -70,6 +83,7 @@ std::optional<std::size_t> new_links(double number, std::size_t kept,
   const std::size_t room = rule.most_links > before ? rule.most_links - before : 0;
   const std::size_t links = std::min(links_needed(number), room);
   if (links <= present) return std::nullopt;
+  refuse_slips(links, rule);
   return links;
 }
 

@@ -109,6 +109,8 @@ std::string output_text(const SceneConfig& c) {
     parts.push_back(fmt::format("{} rows of observables", rows(*c.output.observables)));
   if (c.output.frames)
     parts.push_back(fmt::format("{} frames of all beads", rows(*c.output.frames)));
+  if (c.output.budget)
+    parts.push_back(fmt::format("{} rows of energy and momentum", rows(*c.output.budget)));
   if (c.output.resolving_power)
     parts.push_back(
         fmt::format("{} samples of the resolving power", rows(*c.output.resolving_power)));

@@ -1,6 +1,5 @@
 #include "ehdjet/simulation/build.hpp"
 
-#include "ehdjet/coulomb/energy.hpp"
 #include "ehdjet/coulomb/make_solver.hpp"
 #include "ehdjet/events/insertion.hpp"
 #include "ehdjet/events/landing.hpp"
@@ -41,31 +40,42 @@ std::optional<Varicosity> varicosity_of(const SceneConfig& c) {
 
 RefinementRule refinement_rule(const SceneConfig& c) {
   const RefinementConfig& r = *c.refinement;
-  RefinementRule rule{.mesh = {.length = r.length,
-                               .weight = r.weight,
-                               .strength = r.weight_strength.value_or(1),
-                               .shortest = r.shortest.value_or(0),
-                               .longest = r.longest.value_or(MeshRule{}.longest),
-                               .most_links = r.max_beads.value_or(MeshRule{}.most_links)},
-                      .remap = r.remap,
-                      .spread = r.spread.value_or(Spread::linear),
-                      .velocity = r.velocity,
-                      .stress = r.stress,
-                      .coarsen = r.coarsen,
-                      .collector = {},
-                      .has_nozzle = c.nozzle.has_value()};
+  RefinementRule rule{
+      .mesh = {.length = r.length,
+               .weight = r.weight,
+               .strength = r.weight_strength.value_or(1),
+               .shortest = r.shortest.value_or(0),
+               .longest = r.longest.value_or(MeshRule{}.longest),
+               .most_links = r.max_beads.value_or(MeshRule{}.most_links),
+               .refused_above = r.max_beads.value_or(MeshRule{}.refused_above)},
+      .remap = r.remap,
+      .spread = r.spread.value_or(Spread::linear),
+      .velocity = r.velocity,
+      .stress = r.stress,
+      .coarsen = r.coarsen,
+      .collector = {},
+      .has_nozzle = c.nozzle.has_value()};
   if (c.collector) rule.collector = c.collector->distance;
   return rule;
 }
 
-double acting_energy(const JetState& jet, std::optional<Embryo> embryo) {
+double acting_energy(const JetState& jet, std::optional<Embryo> embryo,
+                     CoulombSolver& solver) {
   std::vector<double> charge = jet.charge;
   const auto r = jet.columns().position();
   if (jet.has_embryo) charge[1] *= embryo->charge_fraction((r[2] - r[0]).norm());
-  return coulomb_energy(r, charge);
+  return solver.energy(r, charge);
 }
 
-std::unique_ptr<Refinement> build_refinement(const SceneConfig& c) {
+// For energies: what the solver of the forces keeps between its calls stays its own.
+std::unique_ptr<CoulombSolver> second_solver(const Scene& scene) {
+  SolverOptions options = solver_options(*scene.config.coulomb, scene.costs);
+  options.check_every.reset();
+  return make_coulomb_solver(options);
+}
+
+std::unique_ptr<Refinement> build_refinement(const Scene& scene) {
+  const SceneConfig& c = scene.config;
   std::optional<Refinement::Recording> recording;
   if (c.output.refinements != RefinementRecords::none)
     recording = {.elastic_modulus =
@@ -74,8 +84,9 @@ std::unique_ptr<Refinement> build_refinement(const SceneConfig& c) {
   if (c.output.refinements == RefinementRecords::energies) {
     std::optional<Embryo> embryo;
     if (c.nozzle) embryo = Embryo{.link_length = c.nozzle->link_length};
-    recording->coulomb_energy = [embryo](const JetState& jet) {
-      return acting_energy(jet, embryo);
+    const std::shared_ptr<CoulombSolver> solver = second_solver(scene);
+    recording->coulomb_energy = [embryo, solver](const JetState& jet) {
+      return acting_energy(jet, embryo, *solver);
     };
   }
   return std::make_unique<Refinement>(refinement_rule(c), c.refinement->interval,
@@ -89,19 +100,27 @@ bool carries_stress(const SceneConfig& c) {
          && c.viscoelasticity->viscosity > 0;
 }
 
+/// l_step, or the shortest link of a given chain [m].
+double shortest_link_at_start(const Scene& scene) {
+  if (scene.config.nozzle) return scene.config.nozzle->link_length;
+  const JetState jet = initial_jet(scene);
+  double length = link_length(jet, 1);
+  for (std::size_t k = 2; k < jet.beads(); ++k)
+    length = std::min(length, link_length(jet, k));
+  return length;
+}
+
+/// Below this no force of a link means anything; without such forces beads may pass each other.
+double shortest_link(const Scene& scene) {
+  const SceneConfig& c = scene.config;
+  if (!c.coulomb && !carries_stress(c) && !c.surface_tension) return 0;
+  constexpr double vanished = 1e-6; // of its length at birth
+  return vanished * shortest_link_at_start(scene);
+}
+
 ErrorScale error_scale(const Scene& scene) {
   const SceneConfig& c = scene.config;
-  double length = 0;
-  if (c.integrator.position_scale) {
-    length = *c.integrator.position_scale;
-  } else if (c.nozzle) {
-    length = c.nozzle->link_length;
-  } else {
-    const JetState jet = initial_jet(scene);
-    length = link_length(jet, 1);
-    for (std::size_t k = 2; k < jet.beads(); ++k)
-      length = std::min(length, link_length(jet, k));
-  }
+  const double length = c.integrator.position_scale.value_or(shortest_link_at_start(scene));
   const double speed = c.integrator.velocity_scale;
   ErrorScale scale{.rtol = c.integrator.rtol.value_or(1),
                    .column_scale = {length, length, length, speed, speed, speed},
@@ -184,13 +203,40 @@ std::unique_ptr<JetDynamics> build_dynamics(const Scene& scene) {
   return dynamics;
 }
 
+std::unique_ptr<Budget> build_budget(const Scene& scene) {
+  const SceneConfig& c = scene.config;
+  BudgetTerms terms;
+  if (c.nozzle)
+    terms.source = {.nozzle = nozzle_of(*c.nozzle),
+                    .embryo = {.link_length = c.nozzle->link_length}};
+  const FixedEnds fixed = c.chain ? c.chain->fixed : FixedEnds::none;
+  terms.first_held = fixed == FixedEnds::first || fixed == FixedEnds::both;
+  terms.last_held = fixed == FixedEnds::last || fixed == FixedEnds::both;
+  if (c.field) terms.field = field_strength(c);
+  if (c.gravity) terms.gravity = c.gravity->acceleration;
+  if (carries_stress(c))
+    terms.fluid = {.elastic_modulus = c.viscoelasticity->elastic_modulus,
+                   .viscosity = c.viscoelasticity->viscosity};
+  if (c.surface_tension) {
+    if (c.surface_tension->form == SurfaceTensionForm::line)
+      terms.line_tension = c.surface_tension->coefficient;
+    else
+      terms.surface_tension =
+          std::make_unique<BendingSurfaceTension>(c.surface_tension->coefficient);
+  }
+  if (c.coulomb) terms.coulomb = second_solver(scene);
+  terms.lands = c.collector.has_value(), terms.refines = c.refinement.has_value();
+  return std::make_unique<Budget>(std::move(terms));
+}
+
 std::unique_ptr<Simulation> build_simulation(const Scene& scene) {
   const SceneConfig& c = scene.config;
   auto integrator = make_integrator(c.integrator.method, error_scale(scene));
   StepLimits limits{.fixed = c.integrator.step,
                     .initial = c.integrator.initial_step,
                     .longest = c.integrator.max_step.value_or(StepLimits{}.longest),
-                    .shortest = c.integrator.min_step};
+                    .shortest = c.integrator.min_step,
+                    .shortest_link = shortest_link(scene)};
   auto simulation = std::make_unique<Simulation>(initial_jet(scene), build_dynamics(scene),
                                                  std::move(integrator), limits);
   if (c.integrator.events == EventPlacement::step_end)
@@ -215,7 +261,7 @@ std::unique_ptr<Simulation> build_simulation(const Scene& scene) {
     simulation->add(std::make_unique<Insertion>(nozzle_of(*c.nozzle), embryo,
                                                 new_bead_of(*c.nozzle), varicosity_of(c)));
   }
-  if (c.refinement) simulation->add(build_refinement(c));
+  if (c.refinement) simulation->add(build_refinement(scene));
   return simulation;
 }
 

@@ -50,6 +50,14 @@ void show(Observer& observer, const JetSnapshot& snapshot) {
   }
 }
 
+/// Smallest |d0 + s (d1 - d0)|^2 for s from 0 to 1.
+double closest_approach(const Vec3& d0, const Vec3& d1) {
+  const Vec3 e = d1 - d0;
+  const double square = e.squaredNorm();
+  const double s = square > 0 ? std::clamp(-d0.dot(e) / square, 0.0, 1.0) : 0.0;
+  return (d0 + s * e).squaredNorm();
+}
+
 class WallClock {
 public:
   [[nodiscard]] double seconds() const {
@@ -110,7 +118,9 @@ void Simulation::run_until(double end_time) {
     if (const auto t = found ? events_[found->index]->scheduled_time() : std::nullopt)
       next_time = CompensatedSum(*t);
     const double t1 = next_time;
+    for (const auto& o : step_observers_) o->begin_step(step, events_);
     show_until(step, t1);
+    for (const auto& o : step_observers_) o->end_step(t1, theta);
     expected_event_ = found || !events_located_ ? never : expected_time(step);
 
     if (found) {
@@ -157,17 +167,24 @@ double Simulation::attempt_step(double h) {
     control_.set_error_order(integrator_->error_order());
     if (limits_.fixed) {
       if (std::isnan(outcome.error)) fail(h, "the state is not a number after");
+      if (const auto bead = vanishing_link()) fail_at_link(h, *bead);
       break;
     }
-    if (outcome.error <= 1) { // false for a NaN
+    // A step without an error of its own may still jump over a singularity.
+    const bool exact = outcome.error <= 1; // false for a NaN
+    const auto vanishing = exact ? vanishing_link() : std::nullopt;
+    if (exact && !vanishing) {
       step_ = control_.after_accepted(h, outcome.error);
       break;
     }
     ++statistics_.rejected;
-    const double next = control_.after_rejected(h, outcome.error);
+    const double next = exact ? h / 4 : control_.after_rejected(h, outcome.error);
     // A step that no longer changes t is as good as none.
     const double round_off = 4 * std::numeric_limits<double>::epsilon() * jet_.time;
-    if (next < std::max(limits_.shortest, round_off)) fail(h, "the step size collapsed at");
+    if (next < std::max(limits_.shortest, round_off)) {
+      if (vanishing) fail_at_link(h, *vanishing);
+      fail(h, "the step size collapsed at");
+    }
     h = next;
   }
   ++statistics_.steps;
@@ -186,6 +203,36 @@ void Simulation::note_method() {
   // What the first step was taken with is the start, not a change.
   if (statistics_.steps > 1) ++record.changes;
   record.in_use = now, record.since = jet_.time;
+}
+
+/// A bead that runs into its upstream neighbour in the step just attempted, between whose ends
+/// beads are taken to fly straight. Those that rest or have passed the collector do not count.
+std::optional<std::size_t> Simulation::vanishing_link() const {
+  const double limit = limits_.shortest_link * limits_.shortest_link;
+  if (limit == 0) return std::nullopt;
+  const std::size_t n = jet_.beads();
+  const auto before = jet_.columns().position();
+  const auto after = JetColumns<const double>{integrator_->end_state(), n}.position();
+  for (std::size_t k = jet_.first(), up = 0; k < n; up = k++) {
+    if (closest_approach(before[k] - before[up], after[k] - after[up]) >= limit) continue;
+    if (jet_.is_landed(k) && jet_.is_landed(up)) continue;
+    if (jet_.absorbing_plane && after.x[up] > *jet_.absorbing_plane) continue;
+    return k;
+  }
+  return std::nullopt;
+}
+
+void Simulation::fail_at_link(double h, std::size_t bead) {
+  const std::size_t up = bead == jet_.first() ? 0 : bead - 1;
+  throw RunError(
+      fmt::format("at t = {:.9g} s (step {:.3g} s) bead {} runs into bead {}: their link, "
+                  "{:.3g} m long, shrinks "
+                  "below {:.3g} m; {}. A chain cannot pass through itself: look for what "
+                  "pushes the beads "
+                  "together, raise viscoelasticity.elastic_modulus or viscosity, or let "
+                  "refinement.coarsen join short links in time",
+                  jet_.time, h, bead, up, link_length(jet_, bead), limits_.shortest_link,
+                  dynamics_->diagnosis(jet_.time, jet_.y, bead)));
 }
 
 std::optional<Simulation::FoundEvent> Simulation::first_event(const DenseStep& step) {
@@ -247,7 +294,7 @@ void Simulation::apply_events(std::size_t located) {
       ++i;
       continue;
     }
-    events_[i]->apply(context);
+    apply(*events_[i], context);
     any = true;
     if (events_[i]->restarts_motion()) {
       after_event_ = i;
@@ -268,6 +315,16 @@ void Simulation::apply_events(std::size_t located) {
   integrator_->restart();
 }
 
+void Simulation::apply(Event& event, EventContext& context) {
+  if (!step_observers_.empty()) {
+    JetState seen = jet_; // as if what the step went through had ended it
+    for (const auto& e : events_) e->anticipate(jet_.time, seen);
+    for (const auto& o : step_observers_) o->before_event(event, seen);
+  }
+  event.apply(context);
+  for (const auto& o : step_observers_) o->after_event(event, jet_);
+}
+
 void Simulation::fail(double h, const char* why) {
   static constexpr std::array<std::string_view, 7> columns{"x",  "y",  "z",     "vx",
                                                            "vy", "vz", "stress"};
@@ -281,7 +338,9 @@ void Simulation::fail(double h, const char* why) {
   const std::string cause = dynamics_->diagnosis(jet_.time, jet_.y, worst % jet_.beads());
   throw RunError(fmt::format(
       "{} t = {:.9g} s (step {:.3g} s), where {} of bead {} changes too "
-      "fast; {}",
+      "fast; {}. If the motion is as it should be there, a larger integrator.rtol or a "
+      "smaller "
+      "integrator.min_step may get past it",
       why, jet_.time, h, columns[worst / jet_.beads()], worst % jet_.beads(), cause));
 }
 

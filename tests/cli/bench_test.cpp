@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <gmock/gmock.h>
 #include <string>
 
@@ -36,6 +37,22 @@ TEST(BenchTable2, refuses_what_it_does_not_know_and_overwrites_nothing) {
   EXPECT_EQ(o.exit_code, 2);
   EXPECT_THAT(o.err, HasSubstr("table2.csv"));
   EXPECT_EQ(text_of(folder / "table2.csv"), "precious");
+}
+
+TEST(Export, has_the_budget_of_a_run_that_was_asked_for_one) {
+  const Folder folder;
+  const std::string run = "run " EHDJET_SCENES "/quickstart.toml --quiet --set "
+                          "run.end_time=1e-3 --set integrator.rtol=1e-6 -o b.h5";
+  ASSERT_EQ(command(folder, run).exit_code, 0);
+  const Outcome none = command(folder, "export b.h5 --budget");
+  EXPECT_EQ(none.exit_code, 2);
+  EXPECT_THAT(none.err, HasSubstr("output.budget"));
+  const Outcome o = command(folder, run + " --force --set output.budget=2e-4");
+  ASSERT_EQ(o.exit_code, 0) << o.err;
+  const Outcome table = command(folder, "export b.h5 --budget");
+  EXPECT_THAT(table.out, testing::StartsWith("time_s,kinetic_energy_j,coulomb_energy_j,"));
+  EXPECT_THAT(table.out, HasSubstr(",energy_residual_relative,momentum_x_kg_m_s,"));
+  EXPECT_EQ(std::ranges::count(table.out, '\n'), 1 + 6);
 }
 
 TEST(Export, has_refinements_and_resolving_power_of_a_refined_run) {

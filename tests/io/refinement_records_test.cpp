@@ -82,6 +82,45 @@ TEST(RefinementRecords, are_missed_with_the_key_that_asks_for_them) {
   EXPECT_THROW((void)run.resolving_power(), InputError);
 }
 
+/// Two numbers that follow from the time.
+class MadeUp final : public Accounts {
+public:
+  [[nodiscard]] std::span<const Column> columns() const override { return columns_; }
+  void measure(const JetSnapshot& snapshot, std::span<double> row) override {
+    row[0] = 2 * snapshot.time, row[1] = -snapshot.time;
+  }
+
+private:
+  std::vector<Column> columns_{{"work", "J", "made up"}, {"impulse", "kg m/s", "made up"}};
+};
+
+TEST(AccountBook, keeps_columns_in_their_order_with_their_units) {
+  const ScratchFolder folder;
+  MadeUp accounts;
+  {
+    RunFile file(folder / "run.h5", false, fabricated_provenance(), 1e9);
+    const auto observer = file.budget(0.5, accounts);
+    for (int i = 0; i < 3; ++i) {
+      EXPECT_EQ(observer->next_time(), 0.5 * i);
+      FabricatedJet made;
+      made.time = 0.5 * i;
+      observer->observe(made.snapshot());
+    }
+    file.finish("complete", "", {}, {});
+  }
+  const RunReader run(folder / "run.h5");
+  ASSERT_TRUE(run.has_budget());
+  const BudgetTable t = run.budget();
+  EXPECT_EQ(t.time, (std::vector<double>{0, 0.5, 1}));
+  EXPECT_EQ(t.names, (std::vector<std::string>{"work", "impulse"}));
+  EXPECT_EQ(t.units, (std::vector<std::string>{"J", "kg m/s"}));
+  EXPECT_EQ(t.columns[0], (std::vector<double>{0, 1, 2}));
+  TextOutput output(folder / "out.csv", false);
+  export_budget(run, output);
+  EXPECT_EQ(text_of(folder / "out.csv"),
+            "time_s,work_j,impulse_kg_m_s\n0,0,-0\n0.5,1,-0.5\n1,2,-1\n");
+}
+
 /// A straight jet with links of 1, 2, 3 ... times `unit`.
 FabricatedJet straight_jet(std::size_t links, double unit, double time) {
   FabricatedJet made;

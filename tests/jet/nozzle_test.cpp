@@ -64,6 +64,12 @@ TEST(Embryo, its_charge_grows_as_half_a_cosine_from_creation_to_release) {
   EXPECT_NEAR(embryo.charge_fraction(3.75e-4), (1 + std::numbers::sqrt2 / 2) / 2, 1e-14);
   EXPECT_EQ(embryo.charge_fraction(embryo.release_distance()), 1);
   EXPECT_EQ(embryo.charge_fraction(5e-4), 1);
+  constexpr double h = 1e-9;
+  for (const double d : {2.9e-4, 3.1e-4, 3.5e-4, 3.83e-4, 4.1e-4})
+    EXPECT_NEAR(embryo.charge_fraction_slope(d),
+                (embryo.charge_fraction(d + h) - embryo.charge_fraction(d - h)) / (2 * h),
+                1e-6 / 1e-4)
+        << d;
 }
 
 } // namespace

@@ -50,6 +50,14 @@ public:
 
   virtual void add_force(ConstVec3View r, std::span<const double> q, Vec3View force) = 0;
 
+  /// Energy of the same charges [J],
+  ///
+  ///     U = sum over pairs of k_C q_i q_j / |r_i - r_j| ,
+  ///
+  /// within the tolerance of accuracy() times the sum of the pairs' magnitudes; pairs at zero
+  /// distance are skipped. The same bits for any number of threads. By default pair by pair.
+  [[nodiscard]] virtual double energy(ConstVec3View r, std::span<const double> q);
+
   /// Pairs at zero distance met by the last `add_force`.
   [[nodiscard]] virtual std::size_t coincident_pairs() const = 0;
   [[nodiscard]] virtual CoulombAccuracy accuracy() const = 0;

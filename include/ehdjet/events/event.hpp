@@ -43,6 +43,10 @@ public:
   /// who look: done to `jet`, a copy at that time.
   virtual void anticipate(double /*t*/, JetState& /*jet*/) const {}
 
+  /// When that happened: appends the times inside the step at which `anticipate` changes the
+  /// chain [s].
+  virtual void list_inner_times(std::vector<double>& /*times*/) const {}
+
   /// Changes the chain. Called at a located time or when due.
   virtual void apply(EventContext& context) = 0;
 

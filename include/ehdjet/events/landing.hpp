@@ -31,6 +31,7 @@ public:
   [[nodiscard]] std::optional<double> locate(const DenseStep& step) override;
   [[nodiscard]] std::optional<double> predict(const DenseStep& step) const override;
   void anticipate(double t, JetState& jet) const override;
+  void list_inner_times(std::vector<double>& times) const override;
   void apply(EventContext& context) override;
 
 private:

@@ -16,7 +16,7 @@ public:
   /// What is needed to record the change of energy.
   struct Recording {
     double elastic_modulus = 0; ///< G [Pa]; 0: there is no stress
-    /// [J]; may be empty: the Coulomb energy costs as much as a direct sum
+    /// [J]; may be empty: the Coulomb energy costs as much as a force evaluation
     std::function<double(const JetState&)> coulomb_energy;
   };
 

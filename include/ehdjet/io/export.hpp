@@ -24,6 +24,9 @@ void export_deposit(const RunReader& run, TextOutput& output);
 /// One row per refinement (CSV).
 void export_refinements(const RunReader& run, TextOutput& output);
 
+/// One row per time of the budget of energy and momentum (CSV).
+void export_budget(const RunReader& run, TextOutput& output);
+
 /// Time mean and minimum of the resolving power at each lambda (CSV), over the samples from time
 /// `from` on [s]; by default the later half of the run.
 /// errors : InputError if there is no sample that late

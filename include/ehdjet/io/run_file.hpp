@@ -37,6 +37,8 @@ public:
   std::unique_ptr<Observer> frames(double interval, bool with_stress);
   std::unique_ptr<Observer> deposit();
   std::unique_ptr<Observer> refinements(bool with_coulomb_energy);
+  /// Rows of energy and momentum; `accounts` must outlive the observer.
+  std::unique_ptr<Observer> budget(double interval, Accounts& accounts);
   /// R = link_length/l along the jet; `link_length`: l_step [m].
   std::unique_ptr<Observer> resolving_power(double interval, double link_length);
 

@@ -36,6 +36,13 @@ struct RefinementTable {
   std::vector<double> worst_link;
 };
 
+/// Energy and momentum over time, the columns that the run had.
+struct BudgetTable {
+  std::vector<double> time;              ///< [s]
+  std::vector<std::string> names, units; ///< of the columns, in their order
+  std::vector<std::vector<double>> columns;
+};
+
 /// Samples of R = l_step/l along the jet.
 struct ResolvingPowerTable {
   std::vector<double> lambda; ///< places along the jet, 0 ... 1
@@ -66,6 +73,7 @@ public:
   [[nodiscard]] bool has_frames() const;
   [[nodiscard]] bool has_deposit() const;
   [[nodiscard]] bool has_refinements() const;
+  [[nodiscard]] bool has_budget() const;
   [[nodiscard]] bool has_resolving_power() const;
 
   /// Names of the observables, alphabetically.
@@ -80,6 +88,7 @@ public:
 
   [[nodiscard]] DepositTable deposit() const;
   [[nodiscard]] RefinementTable refinements() const;
+  [[nodiscard]] BudgetTable budget() const;
   [[nodiscard]] ResolvingPowerTable resolving_power() const;
 
 private:

@@ -37,6 +37,8 @@ struct Embryo {
   ///
   ///     f(d) = (1 - cos(pi (d - 1.5 l)/(0.5 l)))/2,   1.5 l <= d <= 2 l;   0 below, 1 above
   [[nodiscard]] double charge_fraction(double d) const;
+  /// df/dd [1/m]
+  [[nodiscard]] double charge_fraction_slope(double d) const;
 };
 
 } // namespace ehdjet

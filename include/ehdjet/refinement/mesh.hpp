@@ -28,6 +28,8 @@ struct MeshRule {
   double shortest = 0;                                      ///< of a weighted mesh [m]
   double longest = std::numeric_limits<double>::infinity(); ///< of a weighted mesh [m]
   std::size_t most_links = std::numeric_limits<std::size_t>::max(); ///< of the whole jet
+  std::size_t refused_above =
+      10'000'000; ///< links that are a slip, and gigabytes of memory
 };
 
 /// A mesh whose first knots are kept.
@@ -41,6 +43,7 @@ struct Mesh {
 /// `first_knot` whose downstream link is too long, n_ref = ceil(S/L~) links of equal (weighted)
 /// arc length. Nothing if no link is too long or if that would not increase the number of
 /// links.
+/// errors : RunError for more links than are not refused
 std::optional<Mesh> plan_mesh(const JetString& string, const JetState& jet,
                               std::size_t first_knot, const MeshRule& rule);
 

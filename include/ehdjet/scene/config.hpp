@@ -152,6 +152,7 @@ struct OutputConfig {
   std::optional<double> frames;      ///< time between frames of all beads [s]
   bool deposit = false;              ///< record every bead that leaves at the collector
   RefinementRecords refinements = RefinementRecords::none;
+  std::optional<double> budget;          ///< time between rows of energy and momentum [s]
   std::optional<double> resolving_power; ///< time between samples of l_step/l [s]
   double flush = 2;                      ///< longest wall time between flushes to disk [s]
   bool operator==(const OutputConfig&) const = default;

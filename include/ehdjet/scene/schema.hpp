@@ -315,7 +315,10 @@ void describe(V& v, OutputConfig& c) {
   v.optional(
       "refinements", c.refinements, refinement_records,
       "record of each refinement the change of all sums, or also of the energy of all "
-      "pairs of charges, which costs as much as two direct sums");
+      "pairs of charges, which costs as much as two force evaluations");
+  v.optional("budget", c.budget, positive("s", longest_time),
+             "time between rows of energy and momentum and of what does not add up",
+             "none are written");
   v.optional("resolving_power", c.resolving_power, positive("s", longest_time),
              "time between samples of the resolving power link_length/l along the jet",
              "none are taken");

@@ -7,11 +7,15 @@
 
 #include <cstddef>
 #include <limits>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
 namespace ehdjet {
+
+class DenseStep;
+class Event;
 
 /// The jet at one instant, prescribed beads (nozzle, embryo) in their places.
 struct JetSnapshot {
@@ -38,6 +42,35 @@ public:
   virtual void deposit(const DepositedBead& /*bead*/) {}
   /// The chain has been cut anew; only if the run records refinements.
   virtual void refined(const RefinementRecord& /*record*/) {}
+};
+
+/// Sees every step and every event, for what has to be added up over all of a run. Steps of a
+/// simulation that has none of these make no call.
+class StepObserver {
+public:
+  virtual ~StepObserver() = default;
+
+  /// A step has been accepted; observers have not been shown any of it, events not been applied.
+  /// `step` and `events` may be looked at until `end_step`.
+  virtual void begin_step(const DenseStep& step,
+                          std::span<const std::unique_ptr<Event>> events) = 0;
+  /// The step up to `theta` has become the past, the time is t [s].
+  virtual void end_step(double t, double theta) = 0;
+  /// The jet before and after an event, both at its time.
+  virtual void before_event(const Event& event, const JetState& jet) = 0;
+  virtual void after_event(const Event& event, const JetState& jet) = 0;
+};
+
+/// Numbers about a jet under given names, for those who write tables and need not know more.
+class Accounts {
+public:
+  struct Column {
+    std::string name, unit, description;
+  };
+  virtual ~Accounts() = default;
+  [[nodiscard]] virtual std::span<const Column> columns() const = 0;
+  /// row (columns): at the time of the snapshot, which must not lie before the last one.
+  virtual void measure(const JetSnapshot& snapshot, std::span<double> row) = 0;
 };
 
 } // namespace ehdjet

@@ -22,6 +22,9 @@ struct StepLimits {
   std::optional<double> initial;                            ///< first attempt [s]
   double longest = std::numeric_limits<double>::infinity(); ///< [s]
   double shortest = 1e-15; ///< below this the run stops [s]
+  /// A step in which a link becomes shorter than this is too long, and if no step is short
+  /// enough, the run stops; 0: links may vanish [m].
+  double shortest_link = 0;
 };
 
 /// A jet, what moves it, what happens to it and who watches.
@@ -38,6 +41,9 @@ public:
   void add(std::unique_ptr<Event> event);
   void add(std::unique_ptr<Observer> observer) {
     observers_.push_back(std::move(observer));
+  }
+  void add(std::unique_ptr<StepObserver> observer) {
+    step_observers_.push_back(std::move(observer));
   }
   /// Apply events at the end of the step that contains them, as the paper did: first order in
   /// the step size, whatever the method.
@@ -66,11 +72,14 @@ private:
   double choose_step();
   double attempt_step(double h);
   void note_method();
+  [[nodiscard]] std::optional<std::size_t> vanishing_link() const;
+  [[noreturn]] void fail_at_link(double h, std::size_t bead);
   std::optional<FoundEvent> first_event(const DenseStep& step);
   [[nodiscard]] double expected_time(const DenseStep& step) const;
   void show_until(const DenseStep& step, double end);
   void stop_at(const DenseStep& step, double theta);
   void apply_events(std::size_t located);
+  void apply(Event& event, EventContext& context);
   [[noreturn]] void fail(double h, const char* why);
 
   JetState jet_;
@@ -81,6 +90,7 @@ private:
   bool checks_coulomb_;
   std::vector<std::unique_ptr<Event>> events_;
   std::vector<std::unique_ptr<Observer>> observers_;
+  std::vector<std::unique_ptr<StepObserver>> step_observers_;
   StepHook hook_;
   bool events_located_ = true;
 

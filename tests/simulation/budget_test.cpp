@@ -1,0 +1,335 @@
+#include "ehdjet/coulomb/make_solver.hpp"
+#include "ehdjet/integrators/butcher_tableau.hpp"
+#include "ehdjet/integrators/runge_kutta.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "support/budgeted.hpp"
+#include "support/refined.hpp"
+
+namespace ehdjet {
+namespace {
+
+using namespace test;
+
+const std::vector<std::string> adaptive{"dop853", "dormand-prince"};
+
+// ---- given chains ---------------------------------------------------------------------------
+
+TEST(Budget, of_a_chain_closes_to_round_off) {
+  for (const std::string kind : {"free", "held"})
+    for (const std::string& method : adaptive)
+      for (const auto form : {SurfaceTensionForm::paper, SurfaceTensionForm::line}) {
+        GoldenChain golden(kind);
+        golden.scene.config.surface_tension->form = form;
+        golden.scene.config.gravity = GravityConfig{pvp::gravity};
+        integrate(golden.scene, method, 1e-12);
+        const FinishedRun run(golden.scene, 2e-4, 2e-4 / 7);
+        ASSERT_EQ(run.rows.size(), 8U);
+        EXPECT_LE(run.worst(), 1e-12 * run.rows.front().at("coulomb_energy"))
+            << kind << method;
+        EXPECT_GT(run.last().at("dissipated_energy"), 0);
+        EXPECT_LE(run.last().at("momentum_residual_relative"), 1e-14) << kind << method;
+      }
+}
+
+TEST(Budget, has_the_published_parts) {
+  struct Row {
+    std::string kind;
+    double kinetic, coulomb, field, elastic, dissipated, work;
+  };
+  const Row published[] = {
+      {"free", 3.232986979964, 2.318300608448, -0.1742397315794, 0.3487755145694,
+       0.1086085046340, -0.004041428718567},
+      {"held", 2.976400047240, 2.547721046573, -0.2113627942731, 0.4106961113568,
+       0.1068253076179, -0.008193586239860},
+  };
+  for (const Row& row : published) {
+    GoldenChain golden(row.kind);
+    integrate(golden.scene, "dop853", 1e-12);
+    const FinishedRun run(golden.scene, 2e-4, 1e-4);
+    const BudgetRow& b = run.last();
+    const double digits = 2e-12; // of numbers printed with 13
+    EXPECT_NEAR(b.at("kinetic_energy") / erg / row.kinetic, 1, digits) << row.kind;
+    EXPECT_NEAR(b.at("coulomb_energy") / erg / row.coulomb, 1, digits) << row.kind;
+    EXPECT_NEAR(b.at("field_energy") / erg / row.field, 1, digits) << row.kind;
+    EXPECT_NEAR(b.at("elastic_energy") / erg / row.elastic, 1, digits) << row.kind;
+    EXPECT_NEAR(b.at("dissipated_energy") / erg / row.dissipated, 1, 10 * digits)
+        << row.kind;
+    EXPECT_NEAR(b.at("surface_work") / erg / row.work, 1, 100 * digits) << row.kind;
+    if (row.kind != "free") continue;
+    const BudgetRow& start = run.rows.front();
+    EXPECT_NEAR(start.at("coulomb_energy") / erg / 6.009651446934868, 1, 1e-14);
+    EXPECT_NEAR(start.at("field_energy") / erg / -0.1711781421802560, 1, 1e-14);
+    EXPECT_EQ(start.at("energy_residual"), 0);
+  }
+}
+
+// The last link of a held end keeps its stress, and pulls.
+TEST(Budget, of_a_chain_held_at_both_ends_has_the_work_of_its_last_link) {
+  GoldenChain golden("free");
+  golden.scene.config.chain->fixed = FixedEnds::both;
+  for (double& stress : golden.scene.chain.stress) stress = 1e3;
+  integrate(golden.scene, "dop853", 1e-11);
+  const FinishedRun run(golden.scene, 2e-4, 1e-4);
+  EXPECT_LE(run.worst(), 1e-12 * run.rows.front().at("coulomb_energy"));
+  EXPECT_GT(std::abs(run.last().at("held_work")),
+            1e-4 * run.rows.front().at("coulomb_energy"));
+  EXPECT_LE(run.last().at("momentum_residual_relative"), 1e-11);
+}
+
+TEST(Budget, has_columns_for_what_the_scene_has_and_no_others) {
+  using Names = std::vector<std::string>;
+  const auto names = [](const Scene& scene) {
+    Names all;
+    const auto budget = build_budget(scene);
+    for (const auto& c : budget->columns()) all.push_back(c.name);
+    return all;
+  };
+  Scene bare = chain_scene();
+  add_bead(bare, pvp_bead({0, 0, 0}));
+  add_bead(bare, pvp_bead({1e-3, 0, 0}));
+  EXPECT_EQ(names(bare), (Names{"kinetic_energy", "energy_residual",
+                                "energy_residual_relative", "momentum_x", "momentum_y",
+                                "momentum_z", "momentum_residual_x", "momentum_residual_y",
+                                "momentum_residual_z", "momentum_residual_relative"}));
+  const Names golden = names(GoldenChain("held").scene);
+  const auto has = [](const Names& all, const std::string& name) {
+    return std::ranges::find(all, name) != all.end();
+  };
+  for (const std::string name : {"coulomb_energy", "field_energy", "elastic_energy",
+                                 "dissipated_energy", "surface_work", "held_work"})
+    EXPECT_TRUE(has(golden, name)) << name;
+  for (const std::string name : {"gravity_energy", "surface_energy", "nozzle_work",
+                                 "insertion_energy", "landing_energy", "refinement_energy"})
+    EXPECT_FALSE(has(golden, name)) << name;
+  const Names jet = names(refined_case(0.4 * cm));
+  for (const std::string name :
+       {"nozzle_work", "insertion_energy", "landing_energy", "refinement_energy"})
+    EXPECT_TRUE(has(jet, name)) << name;
+  EXPECT_FALSE(has(jet, "held_work"));
+}
+
+// Every kind of force is in the balance: one that is off by a thousandth (gravity, weak as it is,
+// by a hundredth) leaves a residual.
+TEST(Budget, does_not_close_if_a_force_is_not_what_its_energy_says) {
+  const std::pair<const char*, std::function<void(SceneConfig&)>> wrong[] = {
+      {"field", [](SceneConfig& c) { *c.field->strength *= 1.001; }},
+      {"gravity", [](SceneConfig& c) { c.gravity->acceleration *= 1.01; }},
+      {"modulus", [](SceneConfig& c) { c.viscoelasticity->elastic_modulus *= 1.001; }},
+      {"viscosity", [](SceneConfig& c) { c.viscoelasticity->viscosity *= 1.001; }},
+      {"paper", [](SceneConfig& c) { c.surface_tension->coefficient *= 1.001; }},
+      {"line",
+       [](SceneConfig& c) {
+         c.surface_tension->form = SurfaceTensionForm::line;
+         c.surface_tension->coefficient *= 1.001;
+       }},
+  };
+  for (const auto& [name, change] : wrong) {
+    GoldenChain golden("free");
+    golden.scene.config.gravity = GravityConfig{pvp::gravity};
+    if (std::string(name) == "line")
+      golden.scene.config.surface_tension->form = SurfaceTensionForm::line;
+    Scene other = golden.scene;
+    change(other.config);
+    BudgetedRun run(build_simulation(golden.scene), build_budget(other), 2e-4);
+    run.simulation->run_until(2e-4);
+    EXPECT_GT(run.worst(), 1e-8 * 6 * erg) << name;
+  }
+}
+
+/// The stress of each link pulls at the next one.
+class MisplacedStress final : public ForceTerm {
+public:
+  void add_force(const Stage& stage, Vec3View force) override {
+    const Links& links = stage.links();
+    const auto stress = stage.columns.stress();
+    for (std::size_t k = links.first; k < links.last; ++k) {
+      const double wrong = stage.volume[k] * (stress[k + 1] - stress[k])
+                           / (links.length[k] * links.length[k]);
+      const Vec3 pull = wrong * Vec3(links.dx[k], links.dy[k], links.dz[k]);
+      force.add(k, -pull), force.add(k - 1, pull);
+    }
+  }
+  [[nodiscard]] std::string_view name() const override { return "misplaced"; }
+};
+
+TEST(Budget, does_not_close_if_stress_pulls_at_the_wrong_link) {
+  const GoldenChain golden("free");
+  auto dynamics = build_dynamics(golden.scene);
+  dynamics->add(std::make_unique<MisplacedStress>());
+  const ErrorScale scale{.rtol = 1e-10, .column_scale = {2e-4, 2e-4, 2e-4, 1, 1, 1, 500}};
+  auto integrator = std::make_unique<RungeKutta>(butcher_tableau("dop853"), scale);
+  BudgetedRun run(std::make_unique<Simulation>(initial_jet(golden.scene),
+                                               std::move(dynamics), std::move(integrator),
+                                               StepLimits{}),
+                  build_budget(golden.scene), 2e-4);
+  run.simulation->run_until(2e-4);
+  EXPECT_GT(std::abs(run.last().at("energy_residual_relative")), 1e-4);
+}
+
+// ---- jets -----------------------------------------------------------------------------------
+
+/// A nozzle that moves and feeds so fast that its work counts.
+Scene fast_nozzle(double rtol) {
+  Scene scene = case_one("dormand-prince", rtol);
+  scene.config.nozzle->velocity = 1;
+  scene.config.nozzle->amplitude = 1e-4;
+  return scene;
+}
+
+TEST(Budget, of_the_pvp_jet_closes_with_the_tolerance) {
+  for (const bool fast : {false, true}) {
+    double before = 1e-5;
+    for (const double rtol : {1e-5, 1e-7, 1e-9}) {
+      const Scene scene = fast ? fast_nozzle(rtol) : case_one("dormand-prince", rtol);
+      const FinishedRun run(scene, 3e-3, 1e-3);
+      EXPECT_GT(run.simulation->statistics().insertions, 40U);
+      const double relative = std::abs(run.last().at("energy_residual_relative"));
+      EXPECT_LE(relative, before) << rtol << fast;
+      EXPECT_LE(run.last().at("momentum_residual_relative"), rtol) << fast;
+      before = relative / 20; // a hundred times less tolerance
+      if (fast) {
+        EXPECT_GT(std::abs(run.last().at("nozzle_work")), 1e-9);
+      }
+    }
+    EXPECT_LE(before, 1e-10) << fast;
+  }
+}
+
+TEST(Budget, counts_line_tension_of_a_jet_at_a_nozzle) {
+  Scene scene = fast_nozzle(1e-8);
+  scene.config.surface_tension->form = SurfaceTensionForm::line;
+  const FinishedRun run(scene, 2e-3, 1e-3);
+  EXPECT_LE(std::abs(run.last().at("energy_residual_relative")), 1e-8);
+  EXPECT_GT(run.last().at("surface_energy"), 0);
+}
+
+// Steps that go on through landings, refinements, all events of a jet.
+TEST(Budget, of_a_refined_jet_that_lands_closes_with_the_tolerance) {
+  for (const auto landings : {LandingSteps::automatic, LandingSteps::located}) {
+    double before = 1e-4;
+    for (const double rtol : {1e-4, 1e-6}) {
+      Scene scene = refined_case(0.8 * cm, 1e-3, rtol);
+      scene.config.integrator.landings = landings;
+      BudgetedRun run(scene, 5e-3);
+      std::vector<RefinementRecord> records;
+      std::vector<DepositedBead> deposit;
+      run.simulation->add(std::make_unique<Collected>(records, deposit));
+      run.simulation->run_until(15e-3);
+      EXPECT_EQ(run.simulation->jet().absorbing_plane.has_value(),
+                landings == LandingSteps::automatic);
+      ASSERT_GT(deposit.size(), 100U);
+      const BudgetRow& last = run.last();
+      const double relative = std::abs(last.at("energy_residual_relative"));
+      EXPECT_LE(relative, before) << rtol;
+      EXPECT_LE(last.at("momentum_residual_relative"), 2 * before) << rtol;
+      before = relative / 10;
+
+      // What others record of the same events.
+      Vec3 momentum = Vec3::Zero();
+      double kinetic = 0, potential = 0;
+      for (const RefinementRecord& r : records) momentum += r.change.momentum;
+      for (const DepositedBead& b : deposit) {
+        kinetic += b.bead.mass * b.bead.velocity.squaredNorm() / 2;
+        potential -=
+            b.bead.charge * pvp::potential + b.bead.mass * pvp::gravity * pvp::distance;
+      }
+      EXPECT_NEAR(last.at("refinement_momentum_x"), momentum.x(), 1e-10 * momentum.norm());
+      EXPECT_NE(last.at("refinement_energy"), 0);
+      const double lost = -(kinetic + potential); // and Coulomb energy, some per cent
+      EXPECT_NEAR(last.at("landing_energy") / lost, 1, 0.15);
+      EXPECT_LT(last.at("landing_energy"), 0);
+    }
+  }
+}
+
+TEST(Budget, of_fixed_steps_and_snapped_events_is_as_good_as_the_steps) {
+  double before = 1e-4;
+  for (const double dt : {2e-6, 1e-6}) {
+    Scene scene = case_one();
+    integrate_with_fixed_steps(scene, "rk4", dt);
+    const FinishedRun located(scene, 1e-3, 1e-3);
+    const double residual = std::abs(located.last().at("energy_residual_relative"));
+    EXPECT_LE(residual, before) << dt;
+    before = residual / 4;
+    scene.config.integrator.events = EventPlacement::step_end;
+    const FinishedRun snapped(scene, 1e-3, 1e-3);
+    EXPECT_LE(std::abs(snapped.last().at("energy_residual_relative")), 1e-4) << dt;
+  }
+}
+
+TEST(Budget, does_not_change_a_bit_of_the_jet) {
+  std::vector<std::pair<Scene, double>> runs;
+  for (const std::string method : {"rk4", "dormand-prince", "dop853"})
+    runs.emplace_back(case_one(method, method == "rk4" ? 5e-6 : 1e-6), 1e-3);
+  runs.emplace_back(refined_case(0.8 * cm, 1e-3, 1e-5), 13e-3);
+  Scene fast = refined_case(0.8 * cm, 1e-3, 1e-4);
+  fast.config.coulomb = CoulombConfig{.solver = "auto", .tolerance = 1e-4};
+  runs.emplace_back(fast, 13e-3);
+  for (const auto& [scene, end] : runs) {
+    const auto plain = run(scene, end);
+    const FinishedRun accounted(scene, end, end / 30);
+    EXPECT_EQ(accounted.simulation->jet().y, plain->jet().y);
+    EXPECT_EQ(accounted.simulation->jet().time, plain->jet().time);
+    EXPECT_EQ(accounted.simulation->statistics().steps, plain->statistics().steps);
+  }
+}
+
+// How often it is looked at does not matter beyond the error of the quadrature.
+TEST(Budget, is_the_same_however_often_it_is_written) {
+  const Scene scene = case_one("dormand-prince", 1e-6);
+  const FinishedRun rarely(scene, 1e-3, 1e-3), often(scene, 1e-3, 1e-6);
+  EXPECT_EQ(rarely.last().at("kinetic_energy"), often.last().at("kinetic_energy"));
+  for (const std::string name : {"dissipated_energy", "insertion_energy", "nozzle_work"})
+    EXPECT_NEAR(rarely.last().at(name) / often.last().at(name), 1, 1e-9) << name;
+}
+
+// Forces within a tolerance: |residual| <= tolerance * integral of |F| |v|.
+TEST(Budget, with_a_fast_solver_is_off_by_no_more_than_its_forces) {
+  Scene scene = chain_scene();
+  constexpr std::size_t n = 400;
+  for (std::size_t k = 0; k < n; ++k) {
+    const double s = static_cast<double>(k);
+    add_bead(scene, pvp_bead({2e-4 * s, 4e-5 * std::sin(0.2 * s), 4e-5 * std::cos(0.2 * s)},
+                             {3 * std::cos(0.1 * s), 0, 0}));
+  }
+  scene.config.coulomb = CoulombConfig{};
+  integrate(scene, "dop853", 1e-10);
+  const double end = 1e-4;
+  const FinishedRun exact(scene, end, end);
+  EXPECT_LE(exact.worst(), 1e-11 * exact.rows.front().at("coulomb_energy"));
+  for (const std::string solver : {"fmm", "treecode"})
+    for (const double tolerance : {1e-3, 1e-5}) {
+      scene.config.coulomb =
+          CoulombConfig{.solver = solver, .tolerance = tolerance, .leaf = 8};
+      integrate(scene, "dormand-prince", 1e-7);
+      BudgetedRun run(scene, end);
+      const auto direct = make_coulomb_solver("direct");
+      std::vector<double> f(3 * n);
+      double action = 0, steps = 100; // integral of |F| |v|
+      run.simulation->add(std::make_unique<Watch>(end / steps, [&](const JetSnapshot& s) {
+        std::ranges::fill(f, 0.0);
+        const std::span<double> all(f);
+        direct->add_force(s.columns.position(), s.jet.charge,
+                          {all.subspan(0, n), all.subspan(n, n), all.subspan(2 * n, n)});
+        double force = 0, speed = 0;
+        for (const double c : f) force += c * c;
+        for (const double c : s.columns.flat.subspan(3 * n, 3 * n)) speed += c * c;
+        action += std::sqrt(force * speed) * end / steps;
+      }));
+      run.simulation->run_until(end);
+      EXPECT_LE(run.worst(), tolerance * action) << solver << tolerance;
+      EXPECT_GT(run.worst(), 1e-10 * exact.rows.front().at("coulomb_energy")) << solver;
+    }
+}
+
+} // namespace
+} // namespace ehdjet
