@@ -200,7 +200,7 @@ Vec3 JetBalance::motion(std::size_t held) const {
 
 /// The stress of a link follows its ends: T t.(v_k - v_(k-1)) = d/dt V sigma^2/(2 G) + V
 /// sigma^2/mu. The end that does not move freely does the work that the free end does not account
-/// for. The stress of a link whose own bead rests stays what it is.
+/// for. The stress of a link whose own bead has landed stays what it is.
 void JetBalance::add_fluid(Flows& flows) const {
   const Links& links = stage_.links();
   const auto v = stage_.columns.velocity();
@@ -209,15 +209,15 @@ void JetBalance::add_fluid(Flows& flows) const {
     const std::size_t up = upstream_of(links, k);
     const double volume = stage_.volume[k], l = links.length[k];
     const Vec3 pull = volume * stress[k] / (l * l) * vector_of(links, k); // T t
-    if (free_[k] != 0) {
+    if (landed_[k] == 0) {
       flows[Channel::dissipation].energy -=
           volume * stress[k] * stress[k] / terms_.fluid->viscosity;
       if (free_[up] == 0 && landed_[up] == 0)
         flows[support(up)].energy -= pull.dot(v[up]); // v_s included: fluid is fed
-    } else {
-      if (free_[up] != 0) flows[support(k)].energy += pull.dot(v[up]);
-      flows[support(k)].momentum += pull;
+    } else if (free_[up] != 0) {
+      flows[support(k)].energy += pull.dot(v[up]);
     }
+    if (free_[k] == 0) flows[support(k)].momentum += pull;
     if (free_[up] == 0) flows[support(up)].momentum -= pull;
   }
 }

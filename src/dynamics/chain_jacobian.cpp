@@ -12,10 +12,9 @@ void ChainJacobian::reset(std::size_t beads, std::size_t first) {
   first_ = first;
 }
 
-void ChainJacobian::hold(std::size_t bead) {
-  held_[bead] = 1;
-  links_.stretching[bead].setZero(), links_.turning[bead].setZero();
-  links_.relaxation[bead] = 0;
+void ChainJacobian::freeze(std::size_t link) {
+  links_.stretching[link].setZero(), links_.turning[link].setZero();
+  links_.relaxation[link] = 0;
 }
 
 void ChainJacobian::factorize(double eta, std::span<const double> mass) {

@@ -24,8 +24,9 @@ void JetDynamics::bind(const JetState& jet) {
   held_.clear();
   if (nozzle_ || ends_.first) held_.push_back(0);
   if (has_embryo_) held_.push_back(1);
-  if (ends_.last) held_.push_back(jet.links());
   for (const LandedBead& b : landed_) held_.push_back(b.bead);
+  frozen_ = held_;
+  if (ends_.last) held_.push_back(jet.links()); // its link goes on like any other
 
   stage_.mass = mass_, stage_.charge = charge_, stage_.volume = volume_;
   stage_.first = jet.first(), stage_.landed = landed_;
@@ -108,9 +109,10 @@ void JetDynamics::evaluate(double t, std::span<double> y, std::span<double> rate
   // that the charges that vanish make no jump, which would only shorten the step.
   if (!passed_.empty() && passed_.back().bead > stage_.first)
     for (const Passed& p : passed_) force.set(p.bead, force[passed_.back().bead - 1]);
-  const std::size_t columns = rate.size() / n;
   for (const std::size_t k : held_)
-    for (std::size_t c = 0; c < columns; ++c) rate[c * n + k] = 0;
+    for (std::size_t c = 0; c < rates.kinematic_columns; ++c) rate[c * n + k] = 0;
+  if (rheology_)
+    for (const std::size_t k : frozen_) rates.stress()[k] = 0;
 }
 
 void JetDynamics::linearize(double t, std::span<const double> y) {
@@ -120,6 +122,7 @@ void JetDynamics::linearize(double t, std::span<const double> y) {
   jacobian_.reset(mass_.size(), stage_.first);
   for (const auto& term : terms_) term->add_derivatives(stage_, jacobian_.links());
   for (const std::size_t k : held_) jacobian_.hold(k);
+  for (const std::size_t k : frozen_) jacobian_.freeze(k);
 }
 
 // The nozzle is the only bead that moves in a prescribed way and pulls at another one.

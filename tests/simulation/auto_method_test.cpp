@@ -1,3 +1,4 @@
+#include "ehdjet/core/error.hpp"
 #include "ehdjet/scene/stability.hpp"
 
 #include <gtest/gtest.h>
@@ -127,7 +128,12 @@ double growth(double modulus, double viscosity, double share) {
   const double limit = step_limits(chain_rates(scene.config, link_state(scene, 1))).least();
   integrate_with_fixed_steps(scene, "rk4", share * limit);
   const auto size = [&](double end) {
-    const auto simulation = run(scene, end);
+    std::unique_ptr<Simulation> simulation;
+    try {
+      simulation = run(scene, end);
+    } catch (const RunError&) { // beads run into each other
+      return 1.0;
+    }
     double largest = 0;
     for (const double v : simulation->jet().columns().velocity().x)
       largest = std::max(largest, std::abs(v));

@@ -29,15 +29,17 @@ namespace ehdjet {
 /// which goes to mu/eta as G grows. Nothing is assumed to be symmetric or definite.
 ///
 /// cost   : O(n); allocates only when n grows
-/// laws   : with x = 0 for beads that are held, theirs stays 0
+/// laws   : with x = 0 for beads that are held and links that are frozen, theirs stays 0
 class ChainJacobian {
 public:
   /// Zeroes all derivatives. `first`: first bead below bead 0 with a link; its upstream is bead 0.
   void reset(std::size_t beads, std::size_t first);
   [[nodiscard]] LinkDerivatives& links() { return links_; }
   [[nodiscard]] const LinkDerivatives& links() const { return links_; }
-  /// Nothing changes that bead's position, velocity and stress.
-  void hold(std::size_t bead);
+  /// Nothing changes that bead's position and velocity.
+  void hold(std::size_t bead) { held_[bead] = 1; }
+  /// Nothing changes that link's stress.
+  void freeze(std::size_t link);
   [[nodiscard]] bool is_held(std::size_t bead) const { return held_[bead] != 0; }
 
   void factorize(double eta, std::span<const double> mass);

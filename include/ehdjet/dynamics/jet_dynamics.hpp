@@ -99,7 +99,8 @@ private:
   std::vector<double> charge_; // as they act; an embryo's is part of its full charge
   double embryo_charge_ = 0;   // its full charge [C]
   std::vector<LandedBead> landed_;
-  std::vector<std::size_t> held_; // beads with rate zero
+  std::vector<std::size_t> held_;   // beads that do not move freely
+  std::vector<std::size_t> frozen_; // those whose link keeps its stress
   bool has_embryo_ = false;
   std::optional<double> absorbing_plane_; // [m]
   std::vector<Passed> passed_;            // in the present evaluation, from the end on
