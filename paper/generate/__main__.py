@@ -50,7 +50,7 @@ def used_keys(source: pathlib.Path) -> set[str]:
     """The keys of all \\val in the article, each of which has to be known."""
     used = set()
     for line, words in enumerate(source.read_text(encoding="utf-8").splitlines(), 1):
-        for key in re.findall(r"\\val\{([^}#]*)\}", words):
+        for key in re.findall(r"\\val\{([^}#]*)\}", re.sub(r"(?<!\\)%.*", "", words)):
             if key not in values.VALUES:
                 raise FormatError(f"{source}:{line}: there is no number '{key}' (generate/values.py)")
             used.add(key)

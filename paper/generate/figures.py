@@ -53,6 +53,15 @@ def panel_row(run: RunFolder, panels, width: float, height: float, **options):
     return sheet.finish()
 
 
+def with_legend_below(figure_and_missing, columns: int):
+    """The same figure with one legend for all its panels, which share their vertical label, too."""
+    figure, missing = figure_and_missing
+    for axes in figure.axes[1:]:
+        axes.set_ylabel("")
+    legend_below(figure, columns)
+    return figure, missing
+
+
 def letter_axes(axes, index: int) -> None:
     """Puts (a), (b), ... before the title of a panel."""
     axes.set_title(f"({'abcdefgh'[index]}) {axes.get_title()}", loc="left")
@@ -67,10 +76,32 @@ def log_log(axes, x: str, y: str) -> None:
     axes.set_ylabel(y)
 
 
-def room_above(axes, factor: float) -> None:
-    """Widens a logarithmic axis upwards to make room for a legend."""
+LEGEND_ROW = 0.145  # inches: one entry of a legend
+AXES_MARGIN = 0.62  # inches: title and labels above and below the axes
+
+
+def make_room(axes, rows: int, above: bool = True) -> None:
+    """Widens the vertical axis so that a legend with so many rows lies beside no data."""
+    share = min(0.7, (rows * LEGEND_ROW + 0.08) / (axes.figure.get_size_inches()[1] - AXES_MARGIN))
     low, high = axes.get_ylim()
-    axes.set_ylim(low, high * factor)
+    if axes.get_yscale() == "log":
+        low, high = np.log(low), np.log(high)
+    extra = (high - low) * share / (1 - share)
+    low, high = (low, high + extra) if above else (low - extra, high)
+    axes.set_ylim(*(np.exp([low, high]) if axes.get_yscale() == "log" else (low, high)))
+
+
+def legend_below(figure, columns: int) -> None:
+    """One legend for all panels under them, each name once."""
+    entries = {}
+    for axes in figure.axes:
+        for handle, name in zip(*axes.get_legend_handles_labels()):
+            entries.setdefault(name, handle)
+    if entries:
+        rows = -(-len(entries) // columns)
+        share = (rows * LEGEND_ROW + 0.05) / figure.get_size_inches()[1]
+        figure.get_layout_engine().set(rect=(0, share, 1, 1 - share))
+        figure.legend(entries.values(), entries.keys(), loc="lower center", ncol=columns)
 
 
 # ---- Coulomb solvers
@@ -93,7 +124,8 @@ def error_against_time(axes, run: RunFolder) -> None:
         axes.axvline(1e3 * direct.min(), color=style.BLACK, linestyle=":", label="direct sum")
     log_log(axes, "time of one force call (ms)", "relative error of the force ($L_2$)")
     axes.set_title(f"$n$ = {charges:,.0f}")
-    axes.legend(loc="lower center" if len(direct) else "best")
+    axes.legend(loc="lower left")
+    make_room(axes, 3, above=False)
 
 
 def time_against_charges(axes, run: RunFolder) -> None:
@@ -115,8 +147,8 @@ def time_against_charges(axes, run: RunFolder) -> None:
              for s in dict.fromkeys(solvers)]
     looks += [Line2D([], [], color="#666666", linestyle=line, label=style.tolerance_name(t))
               for t, line in zip(tolerances, ("--", "-", "-."))]
-    axes.legend(handles=looks, loc="upper left", fontsize=8)
-    room_above(axes, 30)
+    axes.legend(handles=looks, loc="upper left")
+    make_room(axes, len(looks))
 
 
 def error_over_tolerance(axes, run: RunFolder) -> None:
@@ -143,9 +175,9 @@ def error_over_tolerance(axes, run: RunFolder) -> None:
     axes.grid(False, axis="x")
     axes.set_ylabel("error over tolerance")
     axes.set_title("all cases")
+    axes.set_ylim(top=max(axes.get_ylim()[1], 2))
     axes.legend(loc="lower left")
-    low, high = axes.get_ylim()
-    axes.set_ylim(low / 30, max(high, 2))
+    make_room(axes, 4, above=False)
 
 
 def coulomb(run: RunFolder):
@@ -174,8 +206,8 @@ def deviation_against_tolerance(axes, run: RunFolder) -> None:
         raise NotMeasured("trajectory.csv has no deviations of a fast solver")
     log_log(axes, "tolerance of the solver", "deviation of path length, or growth rate")
     axes.set_title("fast multipole (filled), treecode (open)")
-    axes.legend(loc="upper left", fontsize=8)
-    room_above(axes, 10)
+    axes.legend(loc="upper left")
+    make_room(axes, 2)
 
 
 def deviation_against_time(axes, run: RunFolder) -> None:
@@ -194,8 +226,8 @@ def deviation_against_time(axes, run: RunFolder) -> None:
     axes.set_xlabel("time (ms)")
     axes.set_ylabel("largest deviation of a bead (m)")
     axes.set_title(f"{scene.replace('_', ' ')}, {style.solver_name(solver)}")
-    axes.legend(ncol=2, loc="upper left")
-    room_above(axes, 300)
+    axes.legend(ncol=3, loc="upper left")
+    make_room(axes, -(-len(tolerances) // 3))
 
 
 def trajectory(run: RunFolder):
@@ -234,23 +266,20 @@ def work_precision(scene: str, title: str, axes, run: RunFolder) -> None:
                   markerfacecolor=looks[method]["color"] if filled else "white", **looks[method])
     log_log(axes, "evaluations of all forces", "largest error of a bead's position (m)")
     axes.set_title(title)
-    axes.legend(loc="lower left", handlelength=1.8)
-    low, high = axes.get_ylim()
-    axes.set_ylim(low / (high / low) ** (0.09 * len(curves)), high)
 
 
 def integrators(run: RunFolder):
     """Work and precision of the integrators, with and without location of events."""
     panels = (functools.partial(work_precision, "case_one", "case I"),
               functools.partial(work_precision, "table2_04", r"refined at $\tilde l$ = 0.4 cm"))
-    return panel_row(run, panels, style.PAGE_WIDTH, 3.1)
+    return with_legend_below(panel_row(run, panels, style.PAGE_WIDTH, 3.3), 3)
 
 
 def stiff(run: RunFolder):
     """Work and precision on stiff fluids."""
     panels = [functools.partial(work_precision, scene, title) for scene, title in (
         ("stiff_viscous", "stiff, viscous"), ("stiff_thin", "stiff, thin"), ("solid", "nearly solid"))]
-    return panel_row(run, panels, style.PAGE_WIDTH, 2.7)
+    return with_legend_below(panel_row(run, panels, style.PAGE_WIDTH, 2.5), 4)
 
 
 def stability_map(method: str, scale, axes, run: RunFolder) -> None:
@@ -320,7 +349,7 @@ def path_convergence(axes, run: RunFolder) -> None:
     axes.set_xticks(lengths[:: -(-len(lengths) // 5)])
     axes.minorticks_off()
     axes.legend(title="remap, interval", title_fontsize=8, loc="upper left")
-    room_above(axes, 20)
+    make_room(axes, len(curves) + 1)
 
 
 def resolving_power(axes, run: RunFolder) -> None:
@@ -347,9 +376,8 @@ def varicosity(axes, run: RunFolder) -> None:
                   color=look["color"], linestyle=look["linestyle"], linewidth=0.9)
     axes.set_xlabel("arc length on the collector (cm)")
     axes.set_ylabel(r"radius of the fibre ($\mu$m)")
-    low, high = axes.get_ylim()
-    axes.set_ylim(low, high + 0.3 * (high - low))
-    axes.legend(loc="upper right", ncol=2)
+    axes.legend(loc="upper left", ncol=2)
+    make_room(axes, 1)
 
 
 def refinement(run: RunFolder):
@@ -361,7 +389,7 @@ def snapshots(run: RunFolder):
     """The jet at one instant for every refinement length: from the side and along its axis."""
     table = run["snapshots"].measured("x_m", "y_m", "z_m")
     lengths = table.values_of("length_m")
-    sheet = Panels(run, 2, len(lengths), style.PAGE_WIDTH, 4.3, height_ratios=(2.2, 1), sharex=True, sharey="row")
+    sheet = Panels(run, 2, len(lengths), style.PAGE_WIDTH, 5.2, height_ratios=(2, 1), sharex=True, sharey="row")
     side = 105 * max(np.abs(table["y_m"]).max(), np.abs(table["z_m"]).max())
     for i, (length, look) in enumerate(style.curve_styles(lengths).items()):
         beads = table.where(length_m=length).sorted_by("bead") if length > 0 else table.keep(table["length_m"] == 0)
@@ -382,6 +410,7 @@ def snapshot(beads, vertical: str, color: str, axes, _run: RunFolder) -> None:
     """The beads of one jet and the links between them, y across."""
     axes.plot(100 * beads["y_m"], 100 * beads[vertical], color="#999999", linewidth=0.5)
     axes.plot(100 * beads["y_m"], 100 * beads[vertical], linestyle="none", marker="o", markersize=1.6, color=color)
+    axes.set_aspect("equal")
 
 
 # ---- scaling
@@ -404,7 +433,7 @@ def time_per_ms(axes, run: RunFolder) -> None:
         pass
     log_log(axes, "number of beads", "wall time of a simulated ms (s)")
     axes.legend(loc="upper left")
-    room_above(axes, 100)
+    make_room(axes, len(curves) + 2)
 
 
 PAPER_MILLISECONDS = 200  # the runs of the original Table 2 simulate 0.2 s
@@ -443,7 +472,7 @@ def energy_residual(axes, run: RunFolder) -> None:
     axes.set_xlabel("time (ms)")
     axes.set_ylabel("residual over Coulomb energy")
     axes.legend(loc="upper left")
-    room_above(axes, 10 ** (0.9 * len(set(names))))
+    make_room(axes, len(set(names)))
 
 
 def energy_label(key: str, cell) -> str:

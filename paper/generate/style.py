@@ -12,8 +12,8 @@ import matplotlib.pyplot as plt  # noqa: E402  (the backend has to be chosen fir
 BLACK, ORANGE, SKY, GREEN, YELLOW, BLUE, RED, PURPLE = (
     "#000000", "#E69F00", "#56B4E9", "#009E73", "#F0E442", "#0072B2", "#D55E00", "#CC79A7",
 )
-COLUMN_WIDTH = 3.35  # inches: one column of the article
-PAGE_WIDTH = 6.95    # and both
+
+PAGE_WIDTH = 6.92    # and both
 
 SOLVERS = {
     "direct": dict(color=BLACK, marker="o"),

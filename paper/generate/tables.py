@@ -91,8 +91,8 @@ TABLES = {"table2": table2, "physics": physics, "ideas": ideas}
 def readme_table2(run: RunFolder) -> str:
     """Table 2 side by side with the paper in Markdown, with date and processor."""
     table = table2_rows(run)
-    about = [f"{key}: {', '.join(answers)}" for key in ("date", "processor", "simd", "commit")
-             if (answers := run.comments(key))]
+    about = [f"{key}: {answer}" for key in ("date", "processor", "simd", "commit")
+             if (answer := table.comments.get(key))]
     lines = [
         "| L~ | solver | threads | beads | beads, paper | time | time, paper (24 cores) | gain | error of the path length |",
         "|---|---|---|---|---|---|---|---|---|",

@@ -60,7 +60,17 @@ def comment(key: str, *names: str) -> None:
 
 comment("version", "ehdjet version", "version", "ehdjet")
 comment("commit", "commit")
-comment("date", "date")
+
+
+@value("run/date")
+def _(run):
+    """The day, or the first and the last day of a longer run."""
+    days = sorted({date[:10] for date in run.comments("date")})
+    if not days:
+        raise NotMeasured("no comment line 'date'")
+    return days[0] if len(days) == 1 else f"{days[0]} to {days[-1]}"
+
+
 comment("processor", "processor")
 comment("simd", "simd")
 comment("threads", "threads")
