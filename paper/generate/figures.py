@@ -53,10 +53,10 @@ def panel_row(run: RunFolder, panels, width: float, height: float, **options):
     return sheet.finish()
 
 
-def with_legend_below(figure_and_missing, columns: int):
-    """The same figure with one legend for all its panels, which share their vertical label, too."""
+def with_legend_below(figure_and_missing, columns: int, one_label: bool = True):
+    """The same figure with one legend for all its panels; only the first keeps its vertical label if all are alike."""
     figure, missing = figure_and_missing
-    for axes in figure.axes[1:]:
+    for axes in figure.axes[1:] if one_label else []:
         axes.set_ylabel("")
     legend_below(figure, columns)
     return figure, missing
@@ -76,13 +76,13 @@ def log_log(axes, x: str, y: str) -> None:
     axes.set_ylabel(y)
 
 
-LEGEND_ROW = 0.145  # inches: one entry of a legend
+LEGEND_ROW = 0.153  # inches: one entry of a legend
 AXES_MARGIN = 0.62  # inches: title and labels above and below the axes
 
 
 def make_room(axes, rows: int, above: bool = True) -> None:
     """Widens the vertical axis so that a legend with so many rows lies beside no data."""
-    share = min(0.7, (rows * LEGEND_ROW + 0.08) / (axes.figure.get_size_inches()[1] - AXES_MARGIN))
+    share = min(0.7, (rows * LEGEND_ROW + 0.12) / (axes.figure.get_size_inches()[1] - AXES_MARGIN))
     low, high = axes.get_ylim()
     if axes.get_yscale() == "log":
         low, high = np.log(low), np.log(high)
@@ -147,8 +147,8 @@ def time_against_charges(axes, run: RunFolder) -> None:
              for s in dict.fromkeys(solvers)]
     looks += [Line2D([], [], color="#666666", linestyle=line, label=style.tolerance_name(t))
               for t, line in zip(tolerances, ("--", "-", "-."))]
-    axes.legend(handles=looks, loc="upper left")
-    make_room(axes, len(looks))
+    axes.legend(handles=looks, loc="upper left", ncol=2, columnspacing=0.8)
+    make_room(axes, -(-len(looks) // 2))
 
 
 def error_over_tolerance(axes, run: RunFolder) -> None:
@@ -389,7 +389,7 @@ def snapshots(run: RunFolder):
     """The jet at one instant for every refinement length: from the side and along its axis."""
     table = run["snapshots"].measured("x_m", "y_m", "z_m")
     lengths = table.values_of("length_m")
-    sheet = Panels(run, 2, len(lengths), style.PAGE_WIDTH, 5.2, height_ratios=(2, 1), sharex=True, sharey="row")
+    sheet = Panels(run, 2, len(lengths), style.PAGE_WIDTH, 5.0, height_ratios=(2, 1), sharex=True, sharey="row")
     side = 105 * max(np.abs(table["y_m"]).max(), np.abs(table["z_m"]).max())
     for i, (length, look) in enumerate(style.curve_styles(lengths).items()):
         beads = table.where(length_m=length).sorted_by("bead") if length > 0 else table.keep(table["length_m"] == 0)
@@ -428,12 +428,10 @@ def time_per_ms(axes, run: RunFolder) -> None:
     try:
         paper = run["table2"].positive("beads_paper", "seconds_paper").sorted_by("beads_paper")
         axes.plot(paper["beads_paper"], paper["seconds_paper"] / PAPER_MILLISECONDS, "X", color=style.RED,
-                  label="Lauricella et al. 2016,\n24 cores")
+                  label="Lauricella et al. 2016, 24 cores")
     except NotMeasured:
         pass
     log_log(axes, "number of beads", "wall time of a simulated ms (s)")
-    axes.legend(loc="upper left")
-    make_room(axes, len(curves) + 2)
 
 
 PAPER_MILLISECONDS = 200  # the runs of the original Table 2 simulate 0.2 s
@@ -444,15 +442,13 @@ def memory(axes, run: RunFolder) -> None:
     table = run["scaling"].positive("beads", "memory_bytes").required("memory")
     for solver in sorted(set(table["solver"])):
         rows = table.where(solver=solver).sorted_by("beads")
-        axes.plot(rows["beads"], rows["memory_bytes"] / 2**20, linestyle="none", label=style.solver_name(solver),
-                  **style.solver_style(solver))
+        axes.plot(rows["beads"], rows["memory_bytes"] / 2**20, linestyle="none", **style.solver_style(solver))
     log_log(axes, "number of beads", "memory (MiB)")
-    axes.legend(loc="upper left")
 
 
 def scaling(run: RunFolder):
     """Cost beyond Table 2."""
-    return panel_row(run, (time_per_ms, memory), style.PAGE_WIDTH, 2.5)
+    return with_legend_below(panel_row(run, (time_per_ms, memory), style.PAGE_WIDTH, 2.6), 3, one_label=False)
 
 
 # ---- physics

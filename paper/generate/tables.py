@@ -60,7 +60,7 @@ def table2(run: RunFolder) -> str:
             cell(row["beads_mean"], 4), whole(row["beads_paper"]), cell(row["seconds_s"], 3), whole(row["seconds_paper"]),
             cell(row["seconds_paper"] / row["seconds_s"], 2), whole(row["evaluations"]), cell(row["tip_error"]),
             cell(row["path_length_error"]), cell(row["deposit_mass_error"])])
-    return tabular("llr rr rrr r rrr".replace(" ", ""), heads, rows, length_changes(table))
+    return tabular("llrrrrrrrrrr", heads, rows, length_changes(table))
 
 
 def physics(run: RunFolder) -> str:
@@ -72,7 +72,7 @@ def physics(run: RunFolder) -> str:
              tex.text(source)]
             for check, value, reference, difference, bound, passed, source in zip(
                 *(table[c] for c in ("check", "value", "reference", "relative_difference", "bound", "passed", "source")))]
-    return tabular(r"p{0.3\textwidth}rrrrp{0.24\textwidth}", heads, rows)
+    return tabular(r"@{}p{0.3\textwidth}rrrrp{0.22\textwidth}@{}", heads, rows)
 
 
 def ideas(run: RunFolder) -> str:

@@ -454,7 +454,7 @@ def register_scaling(solver: str) -> None:
 
     @value(f"scaling/{solver}/beads")
     def _(run):
-        return tex.number(rows(run)["beads"][-1], 1)
+        return tex.power(rows(run)["beads"][-1])
 
     @value(f"scaling/{solver}/time")
     def _(run):
