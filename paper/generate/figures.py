@@ -131,7 +131,7 @@ def error_against_time(axes, run: RunFolder) -> None:
 def time_against_charges(axes, run: RunFolder) -> None:
     """Time of one force call against the number of charges: colour tells the solver, line the tolerance."""
     table = queries.solver_survey(run)
-    tolerances = [t for t in queries.HEADLINE_TOLERANCES if len(table.where(solver="fmm", tolerance=t))]
+    tolerances = queries.shown_tolerances(table.where(solver="fmm"))
     solvers = []
     for solver in ("direct", *queries.FAST_SOLVERS):
         for tolerance, line in zip(tolerances if solver != "direct" else [None], ("--", "-", "-.")):
@@ -153,8 +153,7 @@ def time_against_charges(axes, run: RunFolder) -> None:
 
 def error_over_tolerance(axes, run: RunFolder) -> None:
     """Every case of the survey: its error in units of the tolerance asked for, by geometry."""
-    table = run["coulomb"].positive("error_over_tolerance")
-    table = table.keep(np.isin(table["solver"], queries.FAST_SOLVERS)).required("a fast solver")
+    table = queries.fast_cases(run).positive("error_over_tolerance")
     geometries = [g for g in ("jet", "real", "helix", "line", "ring", "cube") if g in table["geometry"]]
     geometries += sorted(set(table["geometry"]) - set(geometries))
     for offset, solver in ((-0.18, "treecode"), (0.18, "fmm")):
@@ -189,58 +188,53 @@ def coulomb(run: RunFolder):
 # ---- tolerance of the solver in trajectories
 
 
-def deviation_against_tolerance(axes, run: RunFolder) -> None:
-    """What a solver's tolerance does to the path length at the last time compared, by scene."""
-    table = queries.last_times(queries.strictest_rtol(run["trajectory"]))
-    scenes = [s for s in ("case_one", "table2_08", "table2_04", "table2_02", "growth") if s in table["scene"]]
-    looks = style.curve_styles(scenes)
+SCENE_NAMES = {
+    "case_one": "case I", "table2_08": r"$\tilde l$ = 0.8 cm", "table2_04": r"$\tilde l$ = 0.4 cm",
+    "table2_02": r"$\tilde l$ = 0.2 cm", "growth": "bending wave",
+}
+
+
+def deviation(columns: dict[str, str], label: str, axes, run: RunFolder) -> None:
+    """A deviation at the last time compared against the solver's tolerance, by scene.
+
+    `columns` names the column, with "" for the scenes that it does not name. Dotted: what the direct sum's run is off
+    by at the same rtol, the error of the integrator.
+    """
+    table = queries.last_times(run["trajectory"])
+    scenes = [s for s in SCENE_NAMES if s in table["scene"]]
+    looks = style.curve_styles(SCENE_NAMES)
     for scene in scenes:
-        column = "growth_rate_error" if scene == "growth" else "path_length_error"
+        column = columns.get(scene, columns[""])
+        of_scene = table.where(scene=scene)
+        look = {key: part for key, part in looks[scene].items() if key != "linestyle"}
         for solver, filled in (("fmm", True), ("treecode", False)):
-            rows = table.where(scene=scene, solver=solver).positive("tolerance", column).sorted_by("tolerance")
+            rows = of_scene.where(solver=solver).positive("tolerance", column).sorted_by("tolerance")
             if len(rows):
-                look = looks[scene] | dict(linestyle="-" if filled else "--")
-                axes.plot(rows["tolerance"], rows[column], label=scene.replace("_", " ") if filled else None,
-                          markerfacecolor=look["color"] if filled else "white", **look)
+                axes.plot(rows["tolerance"], rows[column], label=SCENE_NAMES[scene] if filled else None,
+                          linestyle="-" if filled else "--", markerfacecolor=look["color"] if filled else "white", **look)
+        own = of_scene.where(solver="direct").positive(column)
+        if len(own):
+            axes.axhline(own[column].max(), color=look["color"], linestyle=":", linewidth=0.9)
     if not axes.lines:
         raise NotMeasured("trajectory.csv has no deviations of a fast solver")
-    log_log(axes, "tolerance of the solver", "deviation of path length, or growth rate")
-    axes.set_title("fast multipole (filled), treecode (open)")
-    axes.legend(loc="upper left")
-    make_room(axes, 2)
-
-
-def deviation_against_time(axes, run: RunFolder) -> None:
-    """How far the beads of case I are from those of the direct sum, over time."""
-    table = queries.strictest_rtol(run["trajectory"].positive("position_error_m", "time_s", "tolerance"))
-    table = table.required("positions over time")
-    scene = queries.first_present(table, "scene", ("case_one",))
-    solver = queries.first_present(table, "solver", ("fmm",))
-    table = table.where(scene=scene, solver=solver).sorted_by("tolerance", "time_s")
-    tolerances = table.values_of("tolerance")
-    looks = style.curve_styles(tolerances)
-    for tolerance in tolerances:
-        rows = table.where(tolerance=tolerance).sorted_by("time_s")
-        axes.plot(1e3 * rows["time_s"], rows["position_error_m"], label=style.tolerance_name(tolerance), **looks[tolerance])
-    axes.set_yscale("log")
-    axes.set_xlabel("time (ms)")
-    axes.set_ylabel("largest deviation of a bead (m)")
-    axes.set_title(f"{scene.replace('_', ' ')}, {style.solver_name(solver)}")
-    axes.legend(ncol=3, loc="upper left")
-    make_room(axes, -(-len(tolerances) // 3))
+    log_log(axes, "tolerance of the solver", label)
 
 
 def trajectory(run: RunFolder):
     """How a solver's tolerance carries into trajectories."""
-    return panel_row(run, (deviation_against_tolerance, deviation_against_time), style.PAGE_WIDTH, 2.4)
+    path = functools.partial(deviation, {"": "path_length_error", "growth": "growth_rate_error"},
+                             "deviation of path length, growth rate")
+    position = functools.partial(deviation, {"": "position_error_m"}, "largest deviation of a bead (m)")
+    return with_legend_below(panel_row(run, (path, position), style.PAGE_WIDTH, 2.5), 5, one_label=False)
 
 
 # ---- integrators
 
 METHOD_NAMES = {
     "euler": "Euler", "heun": "Heun", "rk4": "RK4", "dormand-prince": "Dormand-Prince",
-    "ros34pw2": "ROS34PW2", "auto": "auto",
+    "dop853": "DOP853", "ros34pw2": "ROS34PW2", "auto": "auto",
 }
+FIXED_STEP_METHODS = ("euler", "heun", "rk4")  # of which fixed steps are shown
 
 
 def method_looks(methods) -> dict:
@@ -250,20 +244,29 @@ def method_looks(methods) -> dict:
     return {m: {k: v for k, v in look.items() if k != "linestyle"} for m, look in style.curve_styles(order).items()}
 
 
+def shown_curve(method: str, events: str, control: str) -> bool:
+    """Whether a curve is worth its ink: fixed steps of plain methods, adaptive pairs, one of them at step ends."""
+    if control == "step":
+        return method in FIXED_STEP_METHODS
+    return events == "located" or method == "dormand-prince"
+
+
 def work_precision(scene: str, title: str, axes, run: RunFolder) -> None:
     """Error of positions against evaluations of the right-hand side; broken lines: events at step ends."""
     table = run["integrators"].where(scene=scene).positive("evaluations", "position_error_m").required(scene)
     looks = method_looks(table["method"])
-    curves = sorted(set(zip(table["method"], table["events"], table["landings"], table["control"])))
-    for method, events, landings, control in curves:
+    curves = sorted(set(zip(table["control"], table["method"], table["events"], table["landings"])))
+    both_landings = len(set(table["landings"])) > 1
+    for control, method, events, landings in curves:
+        if not shown_curve(method, events, control):
+            continue
         rows = table.where(method=method, events=events, landings=landings, control=control).sorted_by("evaluations")
-        name = METHOD_NAMES.get(method, method) + (", fixed step" if control == "step" else "")
-        if landings == "located" and len({c[2] for c in curves if c[0] == method and c[1] == events}) > 1:
-            name += ", each landing located"
-        filled = control != "step"
-        axes.plot(rows["evaluations"], rows["position_error_m"], label=name if events != "step-end" else name + ", step ends",
-                  linestyle="--" if events == "step-end" else ":" if landings == "located" and "each" in name else "-",
-                  markerfacecolor=looks[method]["color"] if filled else "white", **looks[method])
+        each = both_landings and landings == "located"
+        name = METHOD_NAMES.get(method, method) + ", fixed step" * (control == "step")
+        name += ", each landing located" * each + ", step ends" * (events == "step-end")
+        axes.plot(rows["evaluations"], rows["position_error_m"], label=name,
+                  linestyle="--" if events == "step-end" else ":" if each else "-",
+                  markerfacecolor="white" if control == "step" else looks[method]["color"], **looks[method])
     log_log(axes, "evaluations of all forces", "largest error of a bead's position (m)")
     axes.set_title(title)
 

@@ -9,6 +9,7 @@ from .run_folder import NotMeasured, RunFolder, Table
 FAST_SOLVERS = ("treecode", "fmm")
 HEADLINE_TOLERANCES = (1e-3, 1e-6, 1e-9)
 HEADLINE_CHARGES = 1e5
+LEAST_TOLERANCE = 1e-10  # below it round-off of the forces that cancel is larger than the tolerance
 
 
 def first_present(table: Table, column: str, preferred: tuple[str, ...]) -> str:
@@ -39,6 +40,19 @@ def nearest(values: list[float], wanted: float) -> float:
     if not values:
         raise NotMeasured("no values to choose from")
     return min(values, key=lambda value: abs(np.log(value / wanted)))
+
+
+def shown_tolerances(table: Table) -> list[float]:
+    """The headline tolerances, or those nearest to them that were measured."""
+    measured = table.values_of("tolerance")
+    return sorted({nearest(measured, wanted) for wanted in HEADLINE_TOLERANCES} if measured else set(), reverse=True)
+
+
+def fast_cases(run: RunFolder) -> Table:
+    """All force calls in which a fast solver was asked for a tolerance above round-off."""
+    table = run["coulomb"].measured("error_over_tolerance", "tolerance")
+    table = table.keep(np.isin(table["solver"], FAST_SOLVERS) & (table["tolerance"] >= LEAST_TOLERANCE * (1 - 1e-9)))
+    return table.required("a fast solver")
 
 
 def scaling_curve(table: Table, solver: str, tolerance: float | None, y: str, x: str = "charges") -> Table:

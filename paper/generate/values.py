@@ -141,45 +141,29 @@ for _tolerance in ("1e-3", "1e-6", "1e-9"):
     register_crossover(_tolerance)
 
 
-def fast_cases(run: RunFolder) -> Table:
-    """All cases of the survey in which a fast solver was compared with a reference."""
-    table = run["coulomb"].measured("error_over_tolerance")
-    return table.keep(np.isin(table["solver"], (*queries.FAST_SOLVERS, "auto"))).required("a fast solver")
+@value("coulomb/least-tolerance")
+def _(_run):
+    return tex.power(queries.LEAST_TOLERANCE)
 
 
 @value("coulomb/cases")
 def _(run):
-    return tex.count(len(fast_cases(run)))
+    return tex.count(len(queries.fast_cases(run)))
 
 
 @value("coulomb/worst")
 def _(run):
-    return tex.number(largest(fast_cases(run)["error_over_tolerance"]))
+    return tex.number(largest(queries.fast_cases(run)["error_over_tolerance"]))
 
 
 @value("coulomb/kept")
 def _(run):
-    return tex.count(int((fast_cases(run)["error_over_tolerance"] <= 1).sum()))
+    return tex.count(int((queries.fast_cases(run)["error_over_tolerance"] <= 1).sum()))
 
 
 @value("coulomb/direct-error")
 def _(run):
     return tex.number(largest(run["coulomb"].where(solver="direct")["error_per_bead"]))
-
-
-@value("coulomb/auto-excess")
-def _(run):
-    """The worst ratio of the time of "auto" to that of the best of the others."""
-    table = queries.solver_survey(run)
-    ratios = []
-    for charges, tolerance, seconds in zip(*(table.where(solver="auto")[c] for c in ("charges", "tolerance", "seconds_s"))):
-        same = table.where(charges=charges)
-        rivals = [same.where(solver="direct")["seconds_s"],
-                  *(same.where(solver=s, tolerance=tolerance)["seconds_s"] for s in queries.FAST_SOLVERS)]
-        rivals = np.concatenate(rivals)
-        if len(rivals):
-            ratios.append(seconds / rivals.min())
-    return tex.number(largest(np.array(ratios)))
 
 
 def register_closed_form(case: str) -> None:
@@ -200,44 +184,56 @@ for _case in ("ring", "line", "helix"):
 
 # ---- trajectories
 
-def register_trajectory(tolerance: str) -> None:
-    """The worst deviation over all scenes at their last time, for one tolerance of the fast multipole method."""
-    def rows(run: RunFolder) -> Table:
-        table = queries.last_times(queries.strictest_rtol(run["trajectory"]))
-        return table.where(solver="fmm", tolerance=float(tolerance)).required(f"tolerance {tolerance}")
+def deviations(run: RunFolder, tolerance: str) -> Table:
+    """The last times of all scenes with the fast multipole method at a tolerance, or the direct sum's own errors."""
+    table = queries.last_times(run["trajectory"])
+    if tolerance == "own":
+        return table.where(solver="direct").required("the direct sum")
+    return table.where(solver="fmm", tolerance=float(tolerance)).required(f"tolerance {tolerance}")
 
+
+def register_trajectory(tolerance: str) -> None:
+    """The worst deviation over all scenes at their last time, for one tolerance or for the integrator alone."""
     for key, column in (("path", "path_length_error"), ("tip", "tip_error"), ("deposit", "deposit_mass_error"),
                         ("growth", "growth_rate_error")):
         @value(f"trajectory/{tolerance}/{key}")
         def _(run, column=column):
-            return tex.number(largest(rows(run)[column]))
+            return tex.number(largest(deviations(run, tolerance)[column]))
 
     @value(f"trajectory/{tolerance}/position")
     def _(run):
-        return tex.quantity(largest(rows(run).where(scene="case_one")["position_error_m"]), r"\metre")
+        return tex.quantity(largest(deviations(run, tolerance).where(scene="case_one")["position_error_m"]), r"\metre")
 
 
-for _tolerance in ("1e-3", "1e-4", "1e-6"):
+for _tolerance in ("1e-2", "1e-4", "1e-6", "own"):
     register_trajectory(_tolerance)
 
 
-@value("trajectory/exponent")
+@value("trajectory/rtol")
 def _(run):
-    """How the deviation of the path length of refined jets follows the tolerance."""
-    table = queries.last_times(queries.strictest_rtol(run["trajectory"])).where(solver="fmm")
-    table = table.keep(np.char.startswith(table["scene"].astype(str), "table2")).positive("tolerance", "path_length_error")
-    return tex.number(queries.exponent(table["tolerance"], table["path_length_error"]))
+    return tex.power(deviations(run, "own")["rtol"].max())
+
+
+@value("trajectory/time")
+def _(run):
+    return tex.quantity(1e3 * deviations(run, "own").where(scene="case_one").required("case I")["time_s"].max(),
+                        r"\milli\second")
 
 
 # ---- integrators
 
+REFERENCE_ERROR = 1e-11  # metre, of the strict run that errors of positions are taken against
+STEPS_OF_ORDER = 4
+
+
 def register_order(method: str, events: str) -> None:
-    """The order of a method in its fixed step, case I: the slope over all steps that were run."""
+    """The order of a method in its fixed step, case I: the slope over the finest steps above the reference's error."""
     @value(f"order/{method}/{events}")
     def _(run):
         rows = run["integrators"].where(scene="case_one", method=method, events=events, control="step")
-        rows = rows.positive("value", "position_error_m")
-        return tex.number(queries.exponent(rows["value"], rows["position_error_m"]), 3)
+        rows = rows.keep(rows["position_error_m"] > REFERENCE_ERROR).sorted_by("value")
+        finest = rows.keep(np.arange(len(rows)) < STEPS_OF_ORDER)
+        return tex.number(queries.exponent(finest["value"], finest["position_error_m"]), 3)
 
 
 for _method in ("euler", "heun", "rk4"):
@@ -258,7 +254,7 @@ def register_cost(key: str, error: float, **which) -> None:
         return tex.number(cost(run, error, **which))
 
 
-COST_ERROR = 1e-5  # metre: a twentieth of a link at the nozzle
+COST_ERROR = 1e-6  # metre: a two-hundredth of a link at the nozzle
 register_cost("adaptive", COST_ERROR, scene="case_one", method="dormand-prince", events="located", control="rtol")
 register_cost("rk4-located", COST_ERROR, scene="case_one", method="rk4", events="located", control="step")
 register_cost("rk4-step-end", COST_ERROR, scene="case_one", method="rk4", events="step-end", control="step")
