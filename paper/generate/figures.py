@@ -151,6 +151,9 @@ def time_against_charges(axes, run: RunFolder) -> None:
     make_room(axes, -(-len(looks) // 2))
 
 
+LEAST_RATIO = 1e-4  # smaller errors over tolerance are drawn here: few charges, which the direct sum inside takes
+
+
 def error_over_tolerance(axes, run: RunFolder) -> None:
     """Every case of the survey: its error in units of the tolerance asked for, by geometry."""
     table = queries.fast_cases(run).positive("error_over_tolerance")
@@ -164,7 +167,7 @@ def error_over_tolerance(axes, run: RunFolder) -> None:
             look = style.solver_style(solver)
             places = np.array([geometries.index(g) for g in rows["geometry"]]) + offset
             jitter = np.linspace(-0.13, 0.13, len(rows))[np.argsort(np.argsort(np.random.default_rng(1).random(len(rows))))]
-            axes.plot(places + jitter, rows["error_over_tolerance"], linestyle="none", markersize=3, alpha=0.8,
+            axes.plot(places + jitter, np.maximum(rows["error_over_tolerance"], LEAST_RATIO), linestyle="none", markersize=3, alpha=0.8,
                       marker=look["marker"], color=look["color"], markerfacecolor=look["color"] if filled else "white",
                       markeredgewidth=0.6, label=style.solver_name(solver) + ("" if filled else ", per bead"))
     axes.axhline(1, color=style.RED, linewidth=0.9)
@@ -338,21 +341,30 @@ def stability(run: RunFolder):
 # ---- refinement
 
 
+REMAP_LINES = {"conservative": "-", "paper": "--"}
+
+
 def path_convergence(axes, run: RunFolder) -> None:
-    """Deviation of the path length against the refinement length, a curve per remap and interval."""
+    """Deviation of the path length against the refinement length: colour tells the interval, line the remap."""
     table = run["refinement_convergence"].positive("length_m", "path_length_error").required("errors")
-    curves = sorted(set(zip(table["remap"], table["interval_s"])))
-    for (remap, interval), look in style.curve_styles(curves).items():
-        rows = table.where(remap=remap, interval_s=interval).sorted_by("length_m")
-        axes.plot(100 * rows["length_m"], rows["path_length_error"], label=f"{remap}, {1e3 * interval:g} ms", **look)
+    intervals = sorted(table.values_of("interval_s"), reverse=True)
+    looks = style.curve_styles(intervals)
+    for interval in intervals:
+        for remap in table.values_of("remap"):
+            rows = table.where(remap=remap, interval_s=interval).sorted_by("length_m")
+            look = looks[interval] | dict(linestyle=REMAP_LINES.get(remap, ":"))
+            axes.plot(100 * rows["length_m"], rows["path_length_error"], **look)
     log_log(axes, r"refinement length $\tilde l$ (cm)", "deviation of the path length")
-    axes.xaxis.set_major_formatter(ticker.FormatStrFormatter("%g"))
-    axes.xaxis.set_minor_formatter(ticker.NullFormatter())
     lengths = [100 * length for length in table.values_of("length_m")]
     axes.set_xticks(lengths[:: -(-len(lengths) // 5)])
-    axes.minorticks_off()
-    axes.legend(title="remap, interval", title_fontsize=8, loc="upper left")
-    make_room(axes, len(curves) + 1)
+    axes.xaxis.set_major_formatter(ticker.FormatStrFormatter("%g"))
+    axes.xaxis.set_minor_locator(ticker.NullLocator())
+    entries = [Line2D([], [], label=f"{1e3 * interval:g} ms", **(looks[interval] | dict(linestyle="none")))
+               for interval in intervals]
+    entries += [Line2D([], [], color="#666666", linestyle=REMAP_LINES.get(remap, ":"), label=remap)
+                for remap in table.values_of("remap")]
+    axes.legend(handles=entries, loc="upper left", ncol=2, columnspacing=0.6)
+    make_room(axes, -(-len(entries) // 2))
 
 
 def resolving_power(axes, run: RunFolder) -> None:

@@ -126,7 +126,7 @@ class RunFolder:
         problems = []
         for name, (text, numbers) in SCHEMA.items():
             file = path / f"{name}.csv"
-            if file.exists():
+            if file.exists() and file.stat().st_size > 0:
                 try:
                     self.tables[name] = read_table(file, text.split(), numbers.split())
                 except FormatError as error:

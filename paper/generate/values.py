@@ -349,13 +349,23 @@ for _remap in ("conservative", "paper"):
     register_remap(_remap)
 
 
+def finest_compared(run: RunFolder) -> Table:
+    """The finest mesh that is compared with a finer one."""
+    table = run["refinement_convergence"].positive("length_m", "path_length_error").required("errors")
+    return table.where(length_m=min(table.values_of("length_m")))
+
+
 @value("convergence/finest/error")
 def _(run):
-    table = run["refinement_convergence"].positive("length_m", "path_length_error").required("errors")
-    return tex.number(100 * largest(table.where(length_m=min(table.values_of("length_m")))["path_length_error"]))
+    return tex.number(100 * largest(finest_compared(run)["path_length_error"]))
 
 
 @value("convergence/finest/length")
+def _(run):
+    return tex.quantity(100 * finest_compared(run)["length_m"].min(), r"\centi\metre")
+
+
+@value("convergence/reference/length")
 def _(run):
     return tex.quantity(100 * min(run["refinement_convergence"].values_of("length_m")), r"\centi\metre")
 
