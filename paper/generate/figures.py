@@ -470,29 +470,30 @@ def scaling(run: RunFolder):
 
 
 def energy_residual(axes, run: RunFolder) -> None:
-    """What is left of the energy budget over time, relative to the Coulomb energy."""
-    table = run["energy"].keep(run["energy"]["residual"] != 0).measured("time_s", "residual").required("residuals")
-    keys = ("scene", "method", "rtol", "solver", "tolerance")
-    varying = [key for key in keys if len(set(map(str, table[key]))) > 1] or ["rtol"]
-    names = [", ".join(energy_label(key, cell) for key, cell in zip(varying, cells) if energy_label(key, cell))
-             for cells in zip(*(table[key] for key in varying))]
-    for name, look in style.curve_styles(dict.fromkeys(names)).items():
-        rows = table.keep(np.array(names) == name).sorted_by("time_s")
-        axes.plot(1e3 * rows["time_s"], np.abs(rows["residual"]), label=name, markevery=max(1, len(rows) // 6), **look)
-    axes.set_yscale("log")
-    axes.set_xlabel("time (ms)")
-    axes.set_ylabel("residual over Coulomb energy")
+    """The largest residual of the energy budget against rtol, for the fast solvers against their tolerance."""
+    table = run["energy"].measured("residual", "rtol")
+    direct = table.where(solver="direct")
+    methods = method_looks(table["method"])
+    for method in direct.values_of("method"):
+        x, y = largest_by(direct.where(method=method), "rtol", "residual")
+        axes.plot(x, y, label=f"{METHOD_NAMES.get(method, method)}, against rtol", linestyle="-", **methods[method])
+    for solver in queries.FAST_SOLVERS:
+        rows = queries.strictest_rtol(table.where(solver=solver).measured("tolerance"))
+        if len(rows):
+            x, y = largest_by(rows, "tolerance", "residual")
+            axes.plot(x, y, label=f"{style.solver_name(solver)}, against tolerance", linestyle="--",
+                      **style.solver_style(solver))
+    if not axes.lines:
+        raise NotMeasured("energy.csv has no residuals")
+    log_log(axes, "rtol, or tolerance of the solver", "residual over Coulomb energy")
     axes.legend(loc="upper left")
-    make_room(axes, len(set(names)))
+    make_room(axes, len(axes.lines))
 
 
-def energy_label(key: str, cell) -> str:
-    """One part of a curve's name."""
-    if isinstance(cell, str):
-        return style.solver_name(cell) if key == "solver" else METHOD_NAMES.get(cell, cell.replace("_", " "))
-    if not np.isfinite(cell) or cell == 0:
-        return ""
-    return f"rtol {style.tolerance_name(cell)}" if key == "rtol" else style.tolerance_name(cell)
+def largest_by(table, group: str, column: str):
+    """The values of one column and, for each, the largest of another."""
+    groups = table.values_of(group)
+    return groups, [table.where(**{group: value})[column].max() for value in groups]
 
 
 def dispersion(axes, run: RunFolder) -> None:

@@ -103,6 +103,14 @@ def cost_of_error(errors: np.ndarray, costs: np.ndarray, wanted: float) -> float
     return float(np.exp(costs[i - 1] + share * (costs[i] - costs[i - 1])))
 
 
+def extrapolated_cost(errors: np.ndarray, costs: np.ndarray, wanted: float) -> float:
+    """The cost of an error beyond the end of a work-precision curve, along its slope."""
+    if len(set(costs)) < 2:
+        raise NotMeasured("fewer than two costs to extrapolate from")
+    slope, start = np.polyfit(np.log(errors), np.log(costs), 1)
+    return float(np.exp(start + slope * np.log(wanted)))
+
+
 def last_times(table: Table) -> Table:
     """The rows of the last time at which something was compared, scene by scene."""
     mask = np.zeros(len(table), dtype=bool)
