@@ -67,11 +67,11 @@ def physics(run: RunFolder) -> str:
     """Checks against references: what, by how much, against what bound."""
     table = run["physics"]
     heads = ["quantity", "value", "reference", "difference", "bound", "source"]
-    rows = [[tex.text(check), cell(value, 6), cell(reference, 6), cell(difference) + ("" if passed else r"\,!"), cell(bound),
+    rows = [[tex.text(check), cell(value, 5), cell(reference, 5), cell(difference) + ("" if passed else r"\,!"), cell(bound),
              tex.text(source)]
             for check, value, reference, difference, bound, passed, source in zip(
                 *(table[c] for c in ("check", "value", "reference", "relative_difference", "bound", "passed", "source")))]
-    return tabular(r"@{}p{0.33\textwidth}rrrrp{0.27\textwidth}@{}", heads, rows)
+    return tabular(r"@{}p{0.315\textwidth}rrrr>{\raggedright\arraybackslash}p{0.275\textwidth}@{}", heads, rows)
 
 
 def ideas(run: RunFolder) -> str:
