@@ -94,6 +94,8 @@ def main(arguments: list[str]) -> int:
         print("Missing files: " + ", ".join(files))
     if missing:
         print("Not measured in this run:\n  " + "\n  ".join(missing))
+    if failed := run.failed_checks():
+        print("Checks of this run that failed:\n  " + "\n  ".join(failed))
     return 0
 
 

@@ -143,6 +143,13 @@ class RunFolder:
         """The files a complete run has and this one has not."""
         return [f"{name}.csv" for name in SCHEMA if name not in self.tables]
 
+    def failed_checks(self) -> list[str]:
+        """The checks whose value is beyond its bound."""
+        if "checks" not in self.tables:
+            return []
+        failed = self.tables["checks"].where(passed=0.0)
+        return [f"{program}: {check}" for program, check in zip(failed["program"], failed["check"])]
+
     def comments(self, key: str) -> list[str]:
         """What the files say about a key of their comment lines, each answer once."""
         return sorted({table.comments[key] for table in self.tables.values() if key in table.comments})

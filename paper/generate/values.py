@@ -78,67 +78,102 @@ comment("threads", "threads")
 
 # ---- Coulomb solvers
 
-def fast_row(run: RunFolder, charges: float, tolerance: float, solver: str = "fmm") -> Table:
-    """The one row of a solver at a size and a tolerance."""
-    what = f"{solver}, {charges:g} charges at {tolerance:g}"
-    return queries.solver_survey(run).where(charges=charges, tolerance=tolerance, solver=solver).required(what)
+# The text speaks of three tolerances and two sizes; which they are depends on what the run has.
+TOLERANCES = ("loose", "middle", "strict")
+SIZES = {"headline": queries.HEADLINE_CHARGES, "largest": 1e6}
 
 
-def register_coulomb(charges: str, tolerance: str) -> None:
+def tolerance_of(run: RunFolder, rank: str) -> float:
+    """One of the three tolerances that the text speaks of."""
+    shown = queries.shown_tolerances(queries.solver_survey(run).where(solver="fmm"))
+    if len(shown) < len(TOLERANCES):
+        raise NotMeasured("coulomb.csv has fewer than three tolerances")
+    return shown[TOLERANCES.index(rank)]
+
+
+def size_of(run: RunFolder, size: str) -> float:
+    """One of the two numbers of charges that the text speaks of."""
+    return queries.nearest(queries.solver_survey(run).where(solver="fmm").values_of("charges"), SIZES[size])
+
+
+def fast_row(run: RunFolder, size: str, rank: str) -> Table:
+    """The one row of the fast multipole method at a size and a tolerance."""
+    charges, tolerance = size_of(run, size), tolerance_of(run, rank)
+    rows = queries.solver_survey(run).where(charges=charges, tolerance=tolerance, solver="fmm")
+    return rows.required(f"fmm, {charges:g} charges at {tolerance:g}")
+
+
+def register_coulomb(size: str, rank: str) -> None:
     """Time and error of the fast multipole method at one size and tolerance, and its gain on the direct sum."""
-    n, t = float(charges), float(tolerance)
-
-    @value(f"fmm/{charges}/{tolerance}/time")
+    @value(f"fmm/{size}/{rank}/time")
     def _(run):
-        return tex.duration(fast_row(run, n, t)["seconds_s"].min())
+        return tex.duration(fast_row(run, size, rank)["seconds_s"].min())
 
-    @value(f"fmm/{charges}/{tolerance}/error")
+    @value(f"fmm/{size}/{rank}/error")
     def _(run):
-        return tex.number(fast_row(run, n, t)["error_l2"].min())
+        return tex.number(fast_row(run, size, rank)["error_l2"].min())
 
-    @value(f"fmm/{charges}/{tolerance}/gain")
+    @value(f"fmm/{size}/{rank}/gain")
     def _(run):
-        direct = queries.solver_survey(run).where(charges=n, solver="direct").required(f"direct sum of {charges} charges")
-        return tex.number(direct["seconds_s"].min() / fast_row(run, n, t)["seconds_s"].min())
+        direct = queries.solver_survey(run).where(charges=size_of(run, size), solver="direct").required("the direct sum")
+        return tex.number(direct["seconds_s"].min() / fast_row(run, size, rank)["seconds_s"].min())
 
 
-for _charges in ("1e4", "1e5", "1e6"):
-    for _tolerance in ("1e-3", "1e-6", "1e-9"):
-        register_coulomb(_charges, _tolerance)
+for _rank in TOLERANCES:
+    for _size in SIZES:
+        register_coulomb(_size, _rank)
 
-LEAST_CHARGES_OF_FITS = 1e4
+    @value(f"tolerance/{_rank}")
+    def _(run, rank=_rank):
+        return tex.power(tolerance_of(run, rank))
+
+for _size in SIZES:
+    @value(f"charges/{_size}")
+    def _(run, size=_size):
+        return tex.power(size_of(run, size))
 
 
-def register_solver_exponent(solver: str, tolerance: str) -> None:
-    """The exponent of time over the number of charges, from 10^4 charges on."""
-    @value(f"exponent/{solver}/{tolerance}" if tolerance else f"exponent/{solver}")
+def least_of_fits(run: RunFolder) -> float:
+    """From how many charges on exponents are fitted: 10^4, or 10^3 if a short run has too few sizes beyond."""
+    sizes = np.array(queries.solver_survey(run).where(solver="direct").values_of("charges"))
+    return 1e4 if (sizes >= 1e4).sum() > 1 else 1e3
+
+
+@value("exponent/from")
+def _(run):
+    return tex.power(least_of_fits(run))
+
+
+def register_solver_exponent(solver: str, rank: str) -> None:
+    """The exponent of time over the number of charges."""
+    @value(f"exponent/{solver}/{rank}" if rank else f"exponent/{solver}")
     def _(run):
-        limit = float(tolerance) if tolerance else None
-        rows = queries.scaling_curve(queries.solver_survey(run), solver, limit, "seconds_s")
-        return tex.number(queries.exponent(rows["charges"], rows["seconds_s"], LEAST_CHARGES_OF_FITS), 3)
+        tolerance = tolerance_of(run, rank) if rank else None
+        rows = queries.scaling_curve(queries.solver_survey(run), solver, tolerance, "seconds_s")
+        return tex.number(queries.exponent(rows["charges"], rows["seconds_s"], least_of_fits(run)), 3)
 
 
 register_solver_exponent("direct", "")
 for _solver in queries.FAST_SOLVERS:
-    for _tolerance in ("1e-3", "1e-6", "1e-9"):
-        register_solver_exponent(_solver, _tolerance)
+    for _rank in TOLERANCES:
+        register_solver_exponent(_solver, _rank)
 
 
-def register_crossover(tolerance: str) -> None:
+def register_crossover(rank: str) -> None:
     """The number of charges from which the fast multipole method beats the direct sum."""
-    @value(f"crossover/{tolerance}")
+    @value(f"crossover/{rank}")
     def _(run):
         table = queries.solver_survey(run)
         direct = queries.scaling_curve(table, "direct", None, "seconds_s")
-        fast = queries.scaling_curve(table, "fmm", float(tolerance), "seconds_s")
+        fast = queries.scaling_curve(table, "fmm", tolerance_of(run, rank), "seconds_s")
         common, i, j = np.intersect1d(direct["charges"], fast["charges"], return_indices=True)
         if not len(common):
             raise NotMeasured("no common sizes")
         return tex.number(queries.crossover(common, direct["seconds_s"][i], fast["seconds_s"][j]))
 
 
-for _tolerance in ("1e-3", "1e-6", "1e-9"):
-    register_crossover(_tolerance)
+for _rank in TOLERANCES:
+    register_crossover(_rank)
 
 
 @value("coulomb/least-tolerance")
