@@ -71,7 +71,7 @@ def physics(run: RunFolder) -> str:
              tex.text(source)]
             for check, value, reference, difference, bound, passed, source in zip(
                 *(table[c] for c in ("check", "value", "reference", "relative_difference", "bound", "passed", "source")))]
-    return tabular(r"@{}p{0.315\textwidth}rrrr>{\raggedright\arraybackslash}p{0.275\textwidth}@{}", heads, rows)
+    return tabular(r"@{}>{\raggedright}p{0.33\textwidth}rrrr>{\raggedright\arraybackslash}p{0.285\textwidth}@{}", heads, rows)
 
 
 def ideas(run: RunFolder) -> str:
