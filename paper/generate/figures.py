@@ -434,12 +434,14 @@ def snapshot(beads, vertical: str, color: str, axes, _run: RunFolder) -> None:
 def time_per_ms(axes, run: RunFolder) -> None:
     """Wall time of a simulated millisecond against the number of beads, with the paper's Table 2."""
     table = run["scaling"].positive("beads", "time_per_ms_s").required("times")
-    curves = sorted(set(zip(table["solver"], np.nan_to_num(table["tolerance"]))))
-    for (solver, tolerance), line in zip(curves, style.LINE_STYLES * 2):
-        rows = table.where(solver=solver).keep(np.nan_to_num(table.where(solver=solver)["tolerance"]) == tolerance)
+    tolerances = np.nan_to_num(table["tolerance"])
+    curves = sorted(set(zip(table["source"], table["solver"], tolerances)))
+    for (source, solver, tolerance), line in zip(curves, style.LINE_STYLES * 2):
+        rows = table.keep((table["source"] == source) & (table["solver"] == solver) & (tolerances == tolerance))
         rows = rows.sorted_by("beads")
         name = style.solver_name(solver) + (f", {style.tolerance_name(tolerance)}" if tolerance > 0 else "")
-        axes.plot(rows["beads"], rows["time_per_ms_s"], label=name, linestyle=line, **style.solver_style(solver))
+        axes.plot(rows["beads"], rows["time_per_ms_s"], label=name + ", finer mesh" * (source == "cut links"),
+                  linestyle=line, **style.solver_style(solver))
     try:
         paper = run["table2"].positive("beads_paper", "seconds_paper").sorted_by("beads_paper")
         axes.plot(paper["beads_paper"], paper["seconds_paper"] / PAPER_MILLISECONDS, "X", color=style.RED,

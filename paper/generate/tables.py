@@ -43,24 +43,24 @@ def table2_rows(run: RunFolder) -> Table:
     if len(table) > MOST_ROWS:
         table = table.where(threads=max(table.values_of("threads")))
     lengths = table["length_m"]
-    order = np.lexsort((table["threads"], table["solver"].astype(str), np.where(lengths > 0, -lengths, -np.inf)))
+    order = np.lexsort((table["threads"], -table["rtol"], table["solver"].astype(str), np.where(lengths > 0, -lengths, -np.inf)))
     return Table(table.name, {name: cells[order] for name, cells in table.columns.items()}, table.comments)
 
 
 def table2(run: RunFolder) -> str:
     """Table 2 side by side with the paper."""
     table = table2_rows(run)
-    heads = [r"$\tilde l$", "solver", "threads", r"$\langle n\rangle$", r"$n$ \cite{lauricella2016}", "time (s)",
+    heads = [r"$\tilde l$", "solver", "rtol", "threads", r"$\langle n\rangle$", r"$n$ \cite{lauricella2016}", "time (s)",
              r"time \cite{lauricella2016} (s)", "gain", "evaluations", "tip", "path", "deposit"]
     rows = []
     for i in range(len(table)):
         row = {name: cells[i] for name, cells in table.columns.items()}
         rows.append([
-            style.length_name(row["length_m"]), tex.text(style.solver_name(row["solver"])), whole(row["threads"]),
-            cell(row["beads_mean"], 4), whole(row["beads_paper"]), cell(row["seconds_s"], 3), whole(row["seconds_paper"]),
+            style.length_name(row["length_m"]), tex.text(style.solver_name(row["solver"])), tex.power(row["rtol"]),
+            whole(row["threads"]), cell(row["beads_mean"], 4), whole(row["beads_paper"]), cell(row["seconds_s"], 3), whole(row["seconds_paper"]),
             cell(row["seconds_paper"] / row["seconds_s"], 2), whole(row["evaluations"]), cell(row["tip_error"]),
             cell(row["path_length_error"]), cell(row["deposit_mass_error"])])
-    return tabular("llrrrrrrrrrr", heads, rows, length_changes(table))
+    return tabular("@{}llrrrrrrrrrrr@{}", heads, rows, length_changes(table))
 
 
 def physics(run: RunFolder) -> str:
@@ -75,13 +75,21 @@ def physics(run: RunFolder) -> str:
 
 
 def ideas(run: RunFolder) -> str:
-    """What each way of saving evaluations brings."""
+    """What each way of saving evaluations brings: a row per way, a group of columns per refinement length."""
     table = run["table2_ideas"]
-    heads = ["way", r"$\tilde l$", "evaluations", "time (s)", "tip error"]
-    rows = [[tex.text(idea), style.length_name(length), whole(evaluations), cell(seconds), cell(error)]
-            for idea, length, evaluations, seconds, error in zip(
-                *(table[c] for c in ("idea", "length_m", "evaluations", "seconds_s", "tip_error")))]
-    return tabular(r"p{0.34\columnwidth}lrrr", heads, rows[:MOST_ROWS])
+    lengths = table.values_of("length_m")
+    groups = [rf"\multicolumn{{3}}{{c}}{{{'not refined' if length == 0 else style.length_name(length)}}}" for length in lengths]
+    rules = "".join(rf"\cmidrule(lr){{{2 + 3 * i}-{4 + 3 * i}}}" for i in range(len(lengths)))
+    rows = []
+    for idea in dict.fromkeys(table["idea"]):
+        row = [tex.text(idea)]
+        for length in lengths:
+            one = table.where(idea=idea).keep(table.where(idea=idea)["length_m"] == length)
+            row += [whole(one["evaluations"][0]), cell(one["seconds_s"][0]), cell(one["tip_error"][0])] if len(one) else ["--"] * 3
+        rows.append(row)
+    heads = [""] + ["evaluations", "time (s)", "tip error"] * len(lengths)
+    head = " & ".join(["", *groups]) + r" \\" + "\n" + rules + "\n" + heads[0]
+    return tabular("l" + "rrr" * len(lengths), [head, *heads[1:]], rows)
 
 
 TABLES = {"table2": table2, "physics": physics, "ideas": ideas}
@@ -90,6 +98,8 @@ TABLES = {"table2": table2, "physics": physics, "ideas": ideas}
 def readme_table2(run: RunFolder) -> str:
     """Table 2 side by side with the paper in Markdown, with date and processor."""
     table = table2_rows(run)
+    compared = table.keep(np.isfinite(table["seconds_paper"]))
+    table = compared if len(compared) else table
     about = [f"{key}: {answer}" for key in ("date", "processor", "simd", "commit")
              if (answer := table.comments.get(key))]
     lines = [

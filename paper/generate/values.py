@@ -495,7 +495,8 @@ def register_scaling(solver: str) -> None:
     def rows(run: RunFolder) -> Table:
         table = run["scaling"].where(solver=solver).positive("beads", "time_per_ms_s").required(solver)
         tolerances = table.values_of("tolerance")
-        return (table.where(tolerance=max(tolerances)) if tolerances else table).sorted_by("beads")
+        table = table.where(tolerance=max(tolerances)) if tolerances else table
+        return table.where(source=queries.first_present(table, "source", ("collector distance",))).sorted_by("beads")
 
     @value(f"scaling/{solver}/exponent")
     def _(run):
