@@ -143,8 +143,8 @@ def time_against_charges(axes, run: RunFolder) -> None:
     if not solvers:
         raise NotMeasured("coulomb.csv has no times over the number of charges")
     log_log(axes, "number of charges $n$", "time of one force call (ms)")
-    looks = [Line2D([], [], linestyle=":" if s == "direct" else "-", label=style.solver_name(s), **style.solver_style(s))
-             for s in dict.fromkeys(solvers)]
+    looks = [Line2D([], [], linestyle=":" if solver == "direct" else "-", label=style.solver_name(solver),
+                    **style.solver_style(solver)) for solver in dict.fromkeys(solvers)]
     looks += [Line2D([], [], color="#666666", linestyle=line, label=style.tolerance_name(t))
               for t, line in zip(tolerances, ("--", "-", "-."))]
     axes.legend(handles=looks, loc="upper left", ncol=2, columnspacing=0.8)
@@ -166,9 +166,10 @@ def error_over_tolerance(axes, run: RunFolder) -> None:
                 continue
             look = style.solver_style(solver)
             places = np.array([geometries.index(g) for g in rows["geometry"]]) + offset
-            jitter = np.linspace(-0.13, 0.13, len(rows))[np.argsort(np.argsort(np.random.default_rng(1).random(len(rows))))]
-            axes.plot(places + jitter, np.maximum(rows["error_over_tolerance"], LEAST_RATIO), linestyle="none", markersize=3, alpha=0.8,
-                      marker=look["marker"], color=look["color"], markerfacecolor=look["color"] if filled else "white",
+            spread = np.random.default_rng(1).permutation(np.linspace(-0.13, 0.13, len(rows)))
+            axes.plot(places + spread, np.maximum(rows["error_over_tolerance"], LEAST_RATIO), linestyle="none",
+                      markersize=3, alpha=0.8, marker=look["marker"], color=look["color"],
+                      markerfacecolor=look["color"] if filled else "white",
                       markeredgewidth=0.6, label=style.solver_name(solver) + ("" if filled else ", per bead"))
     axes.axhline(1, color=style.RED, linewidth=0.9)
     axes.set_yscale("log")
@@ -214,7 +215,8 @@ def deviation(columns: dict[str, str], label: str, axes, run: RunFolder) -> None
             rows = of_scene.where(solver=solver).positive("tolerance", column).sorted_by("tolerance")
             if len(rows):
                 axes.plot(rows["tolerance"], rows[column], label=SCENE_NAMES[scene] if filled else None,
-                          linestyle="-" if filled else "--", markerfacecolor=look["color"] if filled else "white", **look)
+                          linestyle="-" if filled else "--",
+                          markerfacecolor=look["color"] if filled else "white", **look)
         own = of_scene.where(solver="direct").positive(column)
         if len(own):
             axes.axhline(own[column].max(), color=look["color"], linestyle=":", linewidth=0.9)
@@ -290,10 +292,12 @@ def stiff(run: RunFolder):
 
 def stability_map(method: str, scale, axes, run: RunFolder) -> None:
     """The largest stable step of one method over modulus and viscosity; crosses: refused."""
-    table = queries.base_case(run["stability"]).where(method=method).positive("modulus_pa", "viscosity_pa_s").required(method)
+    table = queries.base_case(run["stability"]).where(method=method)
+    table = table.positive("modulus_pa", "viscosity_pa_s").required(method)
     moduli, viscosities = table.values_of("modulus_pa"), table.values_of("viscosity_pa_s")
     steps = np.full((len(viscosities), len(moduli)), np.nan)
-    for g, mu, step, refusal in zip(table["modulus_pa"], table["viscosity_pa_s"], table["largest_step_s"], table["refusal"]):
+    columns = ("modulus_pa", "viscosity_pa_s", "largest_step_s", "refusal")
+    for g, mu, step, refusal in zip(*(table[column] for column in columns)):
         i, j = viscosities.index(mu), moduli.index(g)
         if np.isfinite(step) and step > 0:
             steps[i, j] = step
@@ -443,7 +447,7 @@ def time_per_ms(axes, run: RunFolder) -> None:
         axes.plot(rows["beads"], rows["time_per_ms_s"], label=name + ", finer mesh" * (source == "cut links"),
                   linestyle=line, **style.solver_style(solver))
     try:
-        paper = run["table2"].positive("beads_paper", "seconds_paper").sorted_by("beads_paper")
+        paper = run["table2"].positive("beads_paper", "seconds_paper").required().sorted_by("beads_paper")
         axes.plot(paper["beads_paper"], paper["seconds_paper"] / PAPER_MILLISECONDS, "X", color=style.RED,
                   label="Lauricella et al. 2016, 24 cores")
     except NotMeasured:

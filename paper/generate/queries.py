@@ -32,7 +32,8 @@ def solver_survey(run: RunFolder) -> Table:
     table = fewest_threads(table.where(geometry=first_present(table, "geometry", ("jet", "real", "helix"))))
     table = table.keep(table["norm"] != "per-bead")
     table = table.required("a jet with the global norm")
-    return table.where(distribution=first_present(table, "distribution", ("modulated", "uniform"))).sorted_by("charges")
+    distribution = first_present(table, "distribution", ("modulated", "uniform"))
+    return table.where(distribution=distribution).sorted_by("charges")
 
 
 def nearest(values: list[float], wanted: float) -> float:

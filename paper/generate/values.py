@@ -115,7 +115,8 @@ def register_coulomb(size: str, rank: str) -> None:
 
     @value(f"fmm/{size}/{rank}/gain")
     def _(run):
-        direct = queries.solver_survey(run).where(charges=size_of(run, size), solver="direct").required("the direct sum")
+        direct = queries.solver_survey(run).where(charges=size_of(run, size), solver="direct")
+        direct = direct.required("the direct sum")
         return tex.number(direct["seconds_s"].min() / fast_row(run, size, rank)["seconds_s"].min())
 
 
@@ -202,7 +203,7 @@ def _(run):
 
 
 def register_closed_form(case: str) -> None:
-    """The worst deviation of the fast multipole method from a closed form, over its tolerance, and the largest size."""
+    """The worst deviation of the fast solvers from a closed form, over the tolerance, and the largest size."""
     @value(f"closed-form/{case}/error")
     def _(run):
         rows = run["coulomb_closed_forms"].where(case=case).positive("tolerance", "relative_error").required(case)
@@ -504,7 +505,7 @@ def register_scaling(solver: str) -> None:
 
     @value(f"scaling/{solver}/beads")
     def _(run):
-        return tex.power(rows(run)["beads"][-1])
+        return tex.power(float(f"{rows(run)['beads'][-1]:.1e}"))
 
     @value(f"scaling/{solver}/time")
     def _(run):
@@ -528,7 +529,8 @@ for _solver in ("direct", *queries.FAST_SOLVERS):
 def energy_rows(run: RunFolder, direct: bool) -> Table:
     """Residuals with the direct sum, or with the fast solvers."""
     table = run["energy"].measured("residual")
-    return table.keep((table["solver"] == "direct") == direct).required("the direct sum" if direct else "a fast solver")
+    table = table.keep((table["solver"] == "direct") == direct)
+    return table.required("the direct sum" if direct else "a fast solver")
 
 
 @value("energy/least")
