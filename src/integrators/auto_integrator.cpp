@@ -12,7 +12,9 @@ namespace ehdjet {
 namespace {
 
 constexpr std::string_view explicit_method = "dormand-prince";
-constexpr int steps_between_looks = 8, looks_to_change = 3;
+constexpr int steps_between_looks = 8;
+// Steps are short for a while after each event, whatever the stiffness: that must not count.
+constexpr int looks_to_leave_explicit = 3, first_patience = 24, most_patience = 1 << 20;
 constexpr double leave_explicit = 0.7, leave_implicit = 0.25;
 // The first step is a cautious guess: accuracy will allow more.
 constexpr double start_implicit = 1;
@@ -35,7 +37,8 @@ AutoIntegrator::AutoIntegrator(const ErrorScale& scale)
     , implicit_(rosenbrock_tableaus().front(), scale)
     , active_(&explicit_)
     , surely_stable_(least_stable_radius(butcher_tableau(explicit_method)))
-    , steps_to_look_(steps_between_looks) {}
+    , steps_to_look_(steps_between_looks)
+    , patience_(first_patience) {}
 
 bool AutoIntegrator::longer_than(double share, double h, const StiffPart& stiff) const {
   const StiffPart::Modes modes = stiff.fastest_modes();
@@ -51,7 +54,7 @@ bool AutoIntegrator::longer_than(double share, double h, const StiffPart& stiff)
 void AutoIntegrator::change_to(Integrator& method) {
   active_ = &method;
   active_->restart();
-  in_a_row_ = 0, steps_to_look_ = steps_between_looks;
+  in_a_row_ = 0, steps_to_look_ = steps_between_looks, steps_ = 0;
 }
 
 void AutoIntegrator::choose(OdeSystem& system, double t, double h,
@@ -64,6 +67,7 @@ void AutoIntegrator::choose(OdeSystem& system, double t, double h,
 }
 
 void AutoIntegrator::reconsider(OdeSystem& system, double t, std::span<const double> y) {
+  ++steps_;
   if (--steps_to_look_ > 0 && !rejected_) return;
   rejected_ = false;
   StiffPart& stiff = *system.stiff_part();
@@ -73,7 +77,11 @@ void AutoIntegrator::reconsider(OdeSystem& system, double t, std::span<const dou
                                   : !longer_than(leave_implicit, accepted_, stiff);
   steps_to_look_ = change ? 1 : steps_between_looks;
   in_a_row_ = change ? in_a_row_ + 1 : 0;
-  if (in_a_row_ < looks_to_change) return;
+  if (in_a_row_ < (is_explicit ? looks_to_leave_explicit : patience_)) return;
+  // Leaving the implicit method was no good idea if it is wanted again so soon.
+  if (is_explicit && left_implicit_ && steps_ < 4 * patience_)
+    patience_ = std::min(2 * patience_, most_patience);
+  left_implicit_ = !is_explicit;
   if (is_explicit)
     change_to(implicit_);
   else

@@ -10,7 +10,8 @@ namespace ehdjet {
 /// Dormand & Prince's explicit pair while accuracy limits the step, ROS34PW2 while stability would.
 ///
 /// The explicit method is left when it steps more than 0.7 of its stability limit, the implicit one
-/// when it steps less than a quarter of it, three looks in a row. The limit is that of the fastest
+/// when it steps less than a quarter of it, several looks in a row: the more the oftener leaving the
+/// implicit one was soon regretted. The limit is that of the fastest
 /// modes of the system's stiff part. A look costs one linearization; there is one every eight
 /// steps, and after a rejection. Nothing else differs from the explicit method alone: as long as it
 /// is not left, every bit is the same.
@@ -55,6 +56,9 @@ private:
   bool rejected_ = false;
   double accepted_ = 0; // length of the last accepted step [s]
   int steps_to_look_, in_a_row_ = 0;
+  int patience_;               ///< looks in a row until the implicit method is left
+  int steps_ = 0;              ///< since the last change of method
+  bool left_implicit_ = false; ///< by that change
 };
 
 } // namespace ehdjet
