@@ -23,13 +23,12 @@ double rate() { // Gamma [1/s]
 
 } // namespace
 
-BendingWave::BendingWave(Shape shape)
-    : shape_(std::move(shape))
+BendingWave::BendingWave(std::vector<double> wavelengths)
+    : wavelengths_(std::move(wavelengths))
     , scene_(chain_scene()) {
-  for (std::size_t k = 0; k < shape_.beads; ++k) {
+  for (std::size_t k = 0; k < beads; ++k) {
     double y = 0;
-    for (const double n : shape_.wavelengths)
-      y += shape_.amplitude * pvp::link_length * cosine(n, k);
+    for (const double n : wavelengths_) y += amplitude * pvp::link_length * cosine(n, k);
     add_bead(scene_, pvp_bead({static_cast<double>(k) * pvp::link_length, y, 0}));
   }
   scene_.config.coulomb = CoulombConfig{};
@@ -38,8 +37,7 @@ BendingWave::BendingWave(Shape shape)
 }
 
 double BendingWave::cosine(double wavelength, std::size_t bead) const {
-  const double from_middle =
-      static_cast<double>(bead) - static_cast<double>(shape_.beads / 2);
+  const double from_middle = static_cast<double>(bead) - static_cast<double>(beads / 2);
   return std::cos(2 * std::numbers::pi / wavelength * from_middle);
 }
 
@@ -62,28 +60,26 @@ double BendingWave::theory(double wavelength) const {
 }
 
 std::vector<double> BendingWave::growth(const JetState& jet) const {
-  const std::size_t rows = std::min<std::size_t>(201, shape_.beads),
-                    first = shape_.beads / 2 - rows / 2;
+  const std::size_t rows = std::min<std::size_t>(201, beads), first = beads / 2 - rows / 2;
   const auto n = static_cast<Eigen::Index>(rows),
-             waves = static_cast<Eigen::Index>(shape_.wavelengths.size());
+             waves = static_cast<Eigen::Index>(wavelengths_.size());
   Eigen::MatrixXd cosines(n, waves);
   Eigen::VectorXd y(n);
   for (Eigen::Index i = 0; i < n; ++i) {
     const std::size_t bead = first + static_cast<std::size_t>(i);
     y(i) = jet.columns().position().y[bead];
     for (Eigen::Index w = 0; w < waves; ++w)
-      cosines(i, w) = cosine(shape_.wavelengths[static_cast<std::size_t>(w)], bead);
+      cosines(i, w) = cosine(wavelengths_[static_cast<std::size_t>(w)], bead);
   }
   const Eigen::VectorXd fit = cosines.colPivHouseholderQr().solve(y);
   std::vector<double> growth;
-  for (const double amplitude : fit)
-    growth.push_back(amplitude / (shape_.amplitude * pvp::link_length));
+  for (const double fitted : fit) growth.push_back(fitted / (amplitude * pvp::link_length));
   return growth;
 }
 
 double BendingWave::growth_rate(const JetState& jet, double wavelength) const {
-  const auto w = std::ranges::find(shape_.wavelengths, wavelength);
-  const auto at = static_cast<std::size_t>(w - shape_.wavelengths.begin());
+  const auto w = std::ranges::find(wavelengths_, wavelength);
+  const auto at = static_cast<std::size_t>(w - wavelengths_.begin());
   return std::acosh(growth(jet).at(at)) / jet.time;
 }
 

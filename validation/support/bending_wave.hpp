@@ -18,12 +18,8 @@ namespace ehdjet::validation {
 /// n beads per wavelength; the second term is the paper's surface tension.
 class BendingWave {
 public:
-  struct Shape {
-    std::vector<double> wavelengths; ///< n of each cosine [beads]
-    std::size_t beads = 801;         ///< odd
-    double amplitude = 1e-7;         ///< in links
-  };
-  explicit BendingWave(Shape shape);
+  /// wavelengths: n of each cosine [beads]
+  explicit BendingWave(std::vector<double> wavelengths);
 
   [[nodiscard]] Scene& scene() { return scene_; }
   [[nodiscard]] double link_length() const;
@@ -38,7 +34,10 @@ public:
 private:
   [[nodiscard]] double cosine(double wavelength, std::size_t bead) const;
 
-  Shape shape_;
+  static constexpr std::size_t beads = 801; // odd
+  static constexpr double amplitude = 1e-7; // in links
+
+  std::vector<double> wavelengths_;
   Scene scene_;
 };
 

@@ -53,12 +53,15 @@ Sample mean(const std::vector<Sample>& samples, double from, double to) {
   return sum;
 }
 
-double largest_distance(const JetState& a, const JetState& b) {
-  if (a.beads() != b.beads()) return std::numeric_limits<double>::quiet_NaN();
+double largest_distance(const JetState& a, const JetState& b, bool from_the_end) {
+  const bool alike = a.beads() == b.beads();
+  if (!alike && !from_the_end) return std::numeric_limits<double>::quiet_NaN();
+  const std::size_t common = std::min(a.beads(), b.beads()) - (alike ? 0 : 1); // no nozzle
   double largest = 0;
-  for (std::size_t k = 0; k < a.beads(); ++k)
-    largest =
-        std::max(largest, (a.columns().position()[k] - b.columns().position()[k]).norm());
+  for (std::size_t k = 1; k <= common; ++k) {
+    const Vec3 ra = a.columns().position()[a.beads() - k];
+    largest = std::max(largest, (ra - b.columns().position()[b.beads() - k]).norm());
+  }
   return largest;
 }
 

@@ -39,8 +39,10 @@ double path_length(ConstVec3View r); // [m]
 /// Means over the samples from `from` to `to`.
 Sample mean(const std::vector<Sample>& samples, double from, double to);
 
-/// Of any bead from the same bead of another jet; not a number if they have not as many [m].
-double largest_distance(const JetState& a, const JetState& b);
+/// Of any bead from the same bead of another jet [m]. With different numbers of beads: not a
+/// number, or in a jet that is not refined, where a bead keeps its place from the leading end,
+/// of those that both have.
+double largest_distance(const JetState& a, const JetState& b, bool from_the_end = false);
 
 /// |a/b - 1|; 0 if both are the same number.
 double relative(double a, double b);
