@@ -60,7 +60,8 @@ double BendingWave::theory(double wavelength) const {
 }
 
 std::vector<double> BendingWave::growth(const JetState& jet) const {
-  const std::size_t rows = std::min<std::size_t>(201, beads), first = beads / 2 - rows / 2;
+  // Whole waves, so that the cosines are orthogonal and none leaks into another.
+  constexpr std::size_t rows = 200, first = beads / 2 - rows / 2;
   const auto n = static_cast<Eigen::Index>(rows),
              waves = static_cast<Eigen::Index>(wavelengths_.size());
   Eigen::MatrixXd cosines(n, waves);
