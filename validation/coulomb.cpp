@@ -242,6 +242,7 @@ void survey(Suite& suite) {
   const std::vector<double> tolerances = suite.pick<std::vector<double>>(
       {1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12},
       {1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12});
+  const std::vector<double> few_tolerances{1e-2, 1e-3, 1e-6, 1e-9}; // of a million
   const std::vector<int> all_threads =
       omp_get_num_procs() > 1 ? std::vector{1, 2} : std::vector{1};
   for (const auto& [name, make] : geometries)
@@ -251,7 +252,7 @@ void survey(Suite& suite) {
       const bool modulated = name == "jet" || name == "line" || name == "helix";
       if (modulated) distribute(c, "modulated");
       survey.measure(name, modulated ? "modulated" : "uniform", c, ToleranceNorm::global,
-                     n == 1'000'000 ? std::vector{1e-2, 1e-3, 1e-6, 1e-9} : tolerances,
+                     n == 1'000'000 ? few_tolerances : tolerances,
                      suite.full() && n >= 10'000 ? all_threads : std::vector{1});
       suite.done(n < 1'000'000 ? 3 : 10, fmt::format("{} {}", name, n));
     }
