@@ -76,6 +76,9 @@ public:
     return quick() ? quick_value : full_value;
   }
 
+  /// Where tables go, for what is no CSV file.
+  [[nodiscard]] const std::filesystem::path& folder() const { return options_.folder; }
+
   /// `columns`: names separated by commas, each ending in its unit.
   Csv csv(std::string_view file, std::string_view columns) const;
 
