@@ -290,27 +290,25 @@ def stiff(run: RunFolder):
     return with_legend_below(panel_row(run, panels, style.PAGE_WIDTH, 2.5), 4)
 
 
-def stability_map(method: str, scale, axes, run: RunFolder) -> None:
-    """The largest stable step of one method over modulus and viscosity; crosses: refused."""
+def stability_map(method: str, column: str, scale, axes, run: RunFolder) -> None:
+    """A column of one method over modulus and viscosity; crosses: refused; grey: nothing reached."""
     table = queries.base_case(run["stability"]).where(method=method)
     table = table.positive("modulus_pa", "viscosity_pa_s").required(method)
     moduli, viscosities = table.values_of("modulus_pa"), table.values_of("viscosity_pa_s")
-    steps = np.full((len(viscosities), len(moduli)), np.nan)
-    columns = ("modulus_pa", "viscosity_pa_s", "largest_step_s", "refusal")
-    for g, mu, step, refusal in zip(*(table[column] for column in columns)):
+    values = np.full((len(viscosities), len(moduli)), np.nan)
+    for g, mu, value, refused in zip(table["modulus_pa"], table["viscosity_pa_s"], table[column],
+                                     queries.refused(table)):
         i, j = viscosities.index(mu), moduli.index(g)
-        if np.isfinite(step) and step > 0:
-            steps[i, j] = step
-        if refusal:
-            axes.plot(j, i, "x", color=style.RED, markersize=6, markeredgewidth=1.4)
-    image = axes.pcolormesh(np.arange(len(moduli)), np.arange(len(viscosities)), steps, norm=scale, cmap="cividis",
+        values[i, j] = value
+        if refused and column.startswith("evaluations"):
+            axes.plot(j, i, "x", color=style.RED, markersize=5, markeredgewidth=1.2)
+    image = axes.pcolormesh(np.arange(len(moduli)), np.arange(len(viscosities)), values, norm=scale, cmap="cividis",
                             shading="nearest")
     axes.set_facecolor("#E8E8E8")
     axes.grid(False)
     axes.set_xticks(range(len(moduli)), [style.tolerance_name(g) for g in moduli], fontsize=8)
     axes.set_yticks(range(len(viscosities)), [style.tolerance_name(mu) for mu in viscosities], fontsize=8)
     thin_out(axes.xaxis, 5)
-    axes.set_xlabel("modulus $G$ (Pa)")
     axes.set_title(METHOD_NAMES.get(method, method))
     axes.stability_image = image
 
@@ -322,23 +320,35 @@ def thin_out(axis, most: int) -> None:
     axis.set_ticklabels([label if i % every == 0 else "" for i, label in enumerate(labels)])
 
 
+STABILITY_ROWS = {"largest_step_s": "largest stable step (s)", "evaluations_1e4": "evaluations"}
+
+
 def stability(run: RunFolder):
-    """One map of the largest stable step for each method."""
+    """Largest stable step, and below it the cost of an accuracy, over modulus and viscosity for each method."""
     table = queries.base_case(run["stability"])
     known = list(METHOD_NAMES)
     methods = sorted(set(table["method"]), key=lambda m: (known.index(m) if m in known else len(known), m))
-    steps = table["largest_step_s"][np.isfinite(table["largest_step_s"]) & (table["largest_step_s"] > 0)]
-    if not len(steps):
-        raise NotMeasured("stability.csv has no largest steps")
-    scale = colors.LogNorm(steps.min(), max(steps.max(), 10 * steps.min()))
-    sheet = Panels(run, 1, len(methods), style.PAGE_WIDTH, 2.2, sharey=True)
-    for i, method in enumerate(methods):
-        sheet.draw(i, functools.partial(stability_map, method, scale))
-        letter_axes(sheet.axes[i], i)
-    sheet.axes[0].set_ylabel(r"viscosity $\mu$ (Pa s)")
-    images = [axes.stability_image for axes in sheet.axes if hasattr(axes, "stability_image")]
-    if images:
-        sheet.figure.colorbar(images[0], ax=list(sheet.axes), label="largest stable step (s)", pad=0.01)
+    sheet = Panels(run, len(STABILITY_ROWS), len(methods), style.PAGE_WIDTH, 3.9, sharex=True, sharey=True)
+    grid = sheet.axes.reshape(len(STABILITY_ROWS), len(methods))
+    letter = 0
+    for row, (column, label) in enumerate(STABILITY_ROWS.items()):
+        measured = table.positive(column)
+        if not len(measured[column]):
+            raise NotMeasured(f"stability.csv has no {column}")
+        least, most = measured[column].min(), measured[column].max()
+        scale = colors.LogNorm(least, max(most, 10 * least))
+        for i, method in enumerate(methods):
+            if method not in set(measured["method"]):  # a choice of method has no step of its own
+                grid[row, i].set_axis_off()
+                continue
+            sheet.draw(row * len(methods) + i, functools.partial(stability_map, method, column, scale))
+            letter_axes(grid[row, i], letter)
+            letter += 1
+        images = [axes.stability_image for axes in grid[row] if hasattr(axes, "stability_image")]
+        sheet.figure.colorbar(images[0], ax=list(grid[row]), label=label, pad=0.01)
+        grid[row, 0].set_ylabel(r"viscosity $\mu$ (Pa s)")
+    for axes in grid[-1]:
+        axes.set_xlabel("modulus $G$ (Pa)")
     return sheet.finish()
 
 

@@ -134,3 +134,8 @@ def base_case(table: Table) -> Table:
         if cells:
             table = table.where(**{column: max(sorted(set(cells)), key=cells.count)}) if len(set(cells)) > 1 else table
     return table.required("the commonest link length, charge and field")
+
+
+def refused(table: Table) -> np.ndarray:
+    """Which stability runs were refused or stopped; those that took too many evaluations were not."""
+    return np.array([bool(reason) and not reason.startswith("more than") for reason in table["refusal"]], dtype=bool)

@@ -355,14 +355,14 @@ def _(run):
 
 @value("stability/refused")
 def _(run):
-    return tex.count(int((run["stability"]["refusal"] != "").sum()))
+    return tex.count(int(queries.refused(run["stability"]).sum()))
 
 
 def register_least_step(method: str) -> None:
-    """The smallest of the largest stable steps of a method, over all points that it does not refuse."""
+    """The smallest of the largest stable steps of a method over modulus and viscosity."""
     @value(f"stability/{method}/least")
     def _(run):
-        rows = run["stability"].where(method=method).positive("largest_step_s").required(method)
+        rows = queries.base_case(run["stability"]).where(method=method).positive("largest_step_s").required(method)
         return tex.quantity(rows["largest_step_s"].min(), r"\second")
 
 
