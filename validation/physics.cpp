@@ -311,10 +311,10 @@ double energy_residual(Csv& csv, const std::string& name, const Scene& scene,
   BudgetedChain chain(
       scene, {s.method, s.rtol,
               CoulombConfig{.solver = s.solver, .tolerance = s.tolerance.value_or(1e-6)}});
-  const Budget start = chain.budget_at(0);
+  const ChainBudget start = chain.budget_at(0);
   double worst = 0;
   for (const double t : times) {
-    const Budget b = chain.budget_at(t);
+    const ChainBudget b = chain.budget_at(t);
     const double residual =
         std::abs(b.stored() - start.stored() + b.dissipated - b.work) / start.coulomb;
     csv.row(name, s.method, s.rtol, s.solver, s.tolerance, t, residual);

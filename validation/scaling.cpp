@@ -102,7 +102,7 @@ public:
     for (const Table2Row& row : table2())
       if (suite_.full() || row.length == 0 || row.length == 0.008) measure(row);
   }
-  static double cost(const Table2Row& row) { return row.beads / 100; }
+  static double cost(const Table2Row& row) { return row.beads / 50; }
 
 private:
   void measure(const Table2Row& row) {

@@ -59,6 +59,12 @@ std::optional<double> Landing::locate(const DenseStep& step) {
   return std::nullopt;
 }
 
+// Beads may have other numbers after that event.
+void Landing::overtaken(double time) {
+  located_.reset();
+  std::erase_if(passing_, [time](const Arrival& a) { return a.time > time; });
+}
+
 std::optional<double> Landing::predict(const DenseStep& step) const {
   if (step.jet.absorbing_plane) return std::nullopt;
   std::size_t k = step.jet.links();

@@ -131,6 +131,9 @@ void Simulation::run_until(double end_time) {
     time_ = next_time;
     jet_.time = t1;
     dynamics_->prescribe(jet_.time, jet_.y);
+    if (found)
+      for (std::size_t i = 0; i < events_.size(); ++i)
+        if (i != found->index) events_[i]->overtaken(t1);
     apply_events(found ? found->index : events_.size());
     statistics_.wall_time = wall_before + clock.seconds();
     if (hook_) hook_(*this);

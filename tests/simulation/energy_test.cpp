@@ -18,9 +18,9 @@ TEST(Energy, of_a_chain_is_stored_dissipated_or_the_work_of_surface_tension) {
       GoldenChain golden(kind);
       golden.scene.config.surface_tension->form = form;
       BudgetedChain chain(golden.scene);
-      const Budget start = chain.budget_at(0);
+      const ChainBudget start = chain.budget_at(0);
       for (std::size_t i = 1; i < golden.times(); ++i) {
-        const Budget b = chain.budget_at(golden.time(i));
+        const ChainBudget b = chain.budget_at(golden.time(i));
         const double residual = b.stored() - start.stored() + b.dissipated - b.work;
         EXPECT_LE(std::abs(residual), 1e-12 * start.coulomb)
             << kind << " " << golden.time(i);
@@ -44,7 +44,7 @@ TEST(Energy, has_the_published_parts) {
   for (const Row& row : rows) {
     const GoldenChain golden(row.kind);
     BudgetedChain chain(golden.scene);
-    const Budget b = chain.budget_at(2e-4);
+    const ChainBudget b = chain.budget_at(2e-4);
     const double digits = 2e-12; // of numbers printed with 13
     EXPECT_NEAR(b.kinetic / erg / row.kinetic, 1, digits) << row.kind;
     EXPECT_NEAR(b.coulomb / erg / row.coulomb, 1, digits) << row.kind;
@@ -54,7 +54,7 @@ TEST(Energy, has_the_published_parts) {
     EXPECT_NEAR(b.work / erg / row.work, 1, 100 * digits) << row.kind;
   }
   const GoldenChain golden("free");
-  const Budget start = BudgetedChain(golden.scene).budget_at(0);
+  const ChainBudget start = BudgetedChain(golden.scene).budget_at(0);
   EXPECT_NEAR(start.stored() / erg / 5.838473304754611, 1, 1e-14);
   EXPECT_NEAR(start.coulomb / erg / 6.009651446934868, 1, 1e-14);
   EXPECT_NEAR(start.field / erg / -0.1711781421802560, 1, 1e-14);

@@ -63,6 +63,19 @@ TEST(ResolvingPower, of_a_jet_refined_at_2_mm_stays_above_seven_hundredths_on_av
   EXPECT_GE(*std::ranges::min_element(r), 0.07);
 }
 
+// A refinement may end a step in which, further on, a landing was located.
+TEST(FrequentLandings, lead_to_the_same_jet_as_those_that_end_steps) {
+  Scene scene = refined_case(0.4 * cm, 1e-3, 1e-6);
+  for (const LinkRemap remap : {LinkRemap::conservative, LinkRemap::paper}) {
+    scene.config.refinement->remap = remap;
+    scene.config.integrator.landings = LandingSteps::automatic;
+    const auto passing = run(scene, 14.5e-3);
+    scene.config.integrator.landings = LandingSteps::located;
+    const auto located = run(scene, 14.5e-3);
+    EXPECT_LE(largest_distance(passing->jet(), located->jet()), 1e-5);
+  }
+}
+
 // Four times the beads, four times the landings, the same number of steps.
 TEST(FrequentLandings, do_not_set_the_pace) {
   const auto evaluations = [](double length) {

@@ -15,7 +15,7 @@
 namespace ehdjet::test {
 
 /// Everything the energy of a chain can be, and what has left or entered it [J].
-struct Budget {
+struct ChainBudget {
   double kinetic = 0, coulomb = 0, field = 0, elastic = 0, line_tension = 0;
   double dissipated = 0, work = 0; // of the fluid; of the paper's surface tension
 
@@ -68,7 +68,7 @@ public:
     rate[n] = dissipation, rate[n + 1] = power;
   }
 
-  [[nodiscard]] Budget budget_at(double t) {
+  [[nodiscard]] ChainBudget budget_at(double t) {
     std::vector<double> y = jet_.y;
     y.resize(y.size() + 2, 0.0);
     ErrorScale scale{.rtol = motion_.rtol,
@@ -85,10 +85,10 @@ public:
   }
 
 private:
-  Budget measure(const std::vector<double>& y) {
+  ChainBudget measure(const std::vector<double>& y) {
     const JetColumns<const double> c{std::span(y).first(jet_.y.size()), jet_.beads()};
     const auto r = c.position(), v = c.velocity();
-    Budget b;
+    ChainBudget b;
     for (std::size_t k = 0; k < jet_.beads(); ++k) {
       if (k > 0 || !held_) {
         b.kinetic += jet_.mass[k] * v[k].squaredNorm() / 2;

@@ -32,6 +32,9 @@ public:
   /// First theta in (0, 1] at which the event happens and must end the step, if it does.
   [[nodiscard]] virtual std::optional<double> locate(const DenseStep& step) = 0;
 
+  /// Another event has ended the step at `time`: what was located behind that has not happened.
+  virtual void overtaken(double /*time*/) {}
+
   /// The exact time of an event that was located and that happens at given times [s].
   [[nodiscard]] virtual std::optional<double> scheduled_time() const { return {}; }
 

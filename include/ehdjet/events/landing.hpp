@@ -29,6 +29,7 @@ public:
   [[nodiscard]] std::string_view name() const override { return "landing"; }
   [[nodiscard]] bool due(const JetState& jet) const override;
   [[nodiscard]] std::optional<double> locate(const DenseStep& step) override;
+  void overtaken(double time) override;
   [[nodiscard]] std::optional<double> predict(const DenseStep& step) const override;
   void anticipate(double t, JetState& jet) const override;
   void list_inner_times(std::vector<double>& times) const override;

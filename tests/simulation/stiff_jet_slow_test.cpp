@@ -1,0 +1,59 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "support/refined.hpp"
+
+namespace ehdjet {
+namespace {
+
+using namespace test;
+
+struct Fluid {
+  const char* name;
+  double modulus, viscosity; // [Pa], [Pa s]
+};
+
+/// A hard elastic fluid and one that relaxes at once: explicit steps are limited to 5e-7 s by elastic
+/// waves in the one, to 5.6e-7 s by relaxation in the other.
+class StiffJets : public testing::TestWithParam<Fluid> {
+protected:
+  static Scene scene(double length, double rtol) {
+    Scene s = refined_case(length, 1e-3, rtol);
+    s.config.integrator.method = "auto";
+    s.config.viscoelasticity =
+        ViscoelasticityConfig{GetParam().modulus, GetParam().viscosity};
+    return s;
+  }
+};
+
+// To 20 ms, with insertion, landing and refinement.
+TEST_P(StiffJets, take_at_most_five_times_the_evaluations_of_the_pvp_jet) {
+  const double end = 20e-3;
+  const auto pvp = run(refined_case(0.2 * cm, 1e-3, 1e-5), end);
+  const RunStatistics cost = run(scene(0.2 * cm, 1e-5), end)->statistics();
+  EXPECT_LE(cost.evaluations, 5 * pvp->statistics().evaluations);
+  EXPECT_GT(cost.landings, 500U);
+  EXPECT_EQ(cost.method->in_use, "ros34pw2");
+  EXPECT_LE(cost.method->changes, 3U);
+}
+
+// The motion is not chaotic.
+TEST_P(StiffJets, converge_in_rtol) {
+  const auto path = [](double rtol) {
+    return path_length_of(run(scene(0.8 * cm, rtol), 15e-3)->jet());
+  };
+  const double exact = path(1e-7), error = std::abs(path(1e-4) - exact),
+               less = std::abs(path(1e-5) - exact), least = std::abs(path(1e-6) - exact);
+  EXPECT_LE(error, 2e-3 * exact);
+  EXPECT_LE(less, 0.4 * error);
+  EXPECT_LE(least, 0.4 * less);
+}
+
+INSTANTIATE_TEST_SUITE_P(Fluids, StiffJets,
+                         testing::Values(Fluid{"hard", 1e8, 2}, Fluid{"thin", 5e3, 1e-3}),
+                         [](const auto& p) { return std::string(p.param.name); });
+
+} // namespace
+} // namespace ehdjet
