@@ -1,0 +1,316 @@
+#include "ehdjet/core/error.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "support/refined.hpp"
+
+// A run that goes on from a checkpoint has the bits of the run that was not interrupted.
+namespace ehdjet {
+namespace {
+
+using namespace test;
+
+/// A run with its checkpoints.
+struct CheckedRun {
+  CheckedRun(const Scene& scene, double interval)
+      : simulation(build_simulation(scene)) {
+    simulation->make_checkpoints(interval,
+                                 [this](const Checkpoint& c) { checkpoints.push_back(c); });
+  }
+  std::unique_ptr<Simulation> simulation;
+  std::vector<Checkpoint> checkpoints;
+};
+
+double time_of(const Checkpoint& c) {
+  return c.at("jet.time").at(0);
+}
+
+/// All that a run knows of itself, but the wall time: what one more checkpoint would say.
+Checkpoint without_wall_time(Checkpoint c) {
+  c.erase("statistics.wall_time");
+  return c;
+}
+
+void expect_equal(const Checkpoint& a, const Checkpoint& b, const std::string& what) {
+  const Checkpoint one = without_wall_time(a), other = without_wall_time(b);
+  ASSERT_EQ(one.size(), other.size());
+  for (const auto& [name, list] : one) EXPECT_EQ(list, other.at(name)) << what << ' ' << name;
+}
+
+void expect_same_end(const Simulation& whole, const Simulation& continued) {
+  EXPECT_EQ(whole.jet().time, continued.jet().time);
+  EXPECT_EQ(whole.jet().y, continued.jet().y);
+  EXPECT_EQ(whole.jet().charge, continued.jet().charge);
+  EXPECT_EQ(double(whole.ledger().inserted_charge),
+            double(continued.ledger().inserted_charge));
+  EXPECT_EQ(whole.ledger().impact_speed, continued.ledger().impact_speed);
+  const RunStatistics &a = whole.statistics(), &b = continued.statistics();
+  EXPECT_EQ(a.evaluations, b.evaluations);
+  EXPECT_EQ(a.steps, b.steps);
+  EXPECT_EQ(a.rejected, b.rejected);
+  EXPECT_EQ(a.insertions, b.insertions);
+  EXPECT_EQ(a.landings, b.landings);
+  EXPECT_EQ(a.refinements, b.refinements);
+  EXPECT_EQ(a.method.has_value(), b.method.has_value());
+  if (a.method) {
+    EXPECT_EQ(a.method->in_use, b.method->in_use);
+    EXPECT_EQ(a.method->changes, b.method->changes);
+  }
+}
+
+/// Runs a scene with checkpoints, goes on from each of them and compares all later ones and the
+/// end. Returns the whole run.
+CheckedRun expect_same_bits(const Scene& scene, double end_time, double interval) {
+  CheckedRun whole(scene, interval);
+  whole.simulation->run_until(end_time);
+  EXPECT_GE(whole.checkpoints.size(), 2U);
+  for (std::size_t k = 0; k < whole.checkpoints.size(); ++k) {
+    CheckedRun rest(scene, interval);
+    rest.simulation->restore(whole.checkpoints[k]);
+    rest.simulation->run_until(end_time);
+    EXPECT_EQ(rest.checkpoints.size(), whole.checkpoints.size() - k - 1);
+    for (std::size_t i = 0; i < rest.checkpoints.size(); ++i)
+      expect_equal(whole.checkpoints[k + 1 + i], rest.checkpoints[i],
+                   "from " + std::to_string(k) + " at " + std::to_string(k + 1 + i));
+    expect_same_end(*whole.simulation, *rest.simulation);
+    if (::testing::Test::HasFailure()) break; // the others would say the same
+  }
+  return whole;
+}
+
+TEST(Checkpoint, goes_on_with_the_same_bits_whatever_the_method) {
+  for (const std::string method : {"dormand-prince", "dop853", "ros34pw2", "auto"}) {
+    SCOPED_TRACE(method);
+    const auto whole = expect_same_bits(case_one(method, 1e-6), 1.5e-3, 2e-4);
+    EXPECT_GE(whole.simulation->statistics().releases, 3U);
+    EXPECT_GT(whole.simulation->statistics().rejected, 0U);
+  }
+}
+
+TEST(Checkpoint, goes_on_with_the_same_bits_with_fixed_steps) {
+  Scene scene = case_one();
+  integrate_with_fixed_steps(scene, "rk4", 1e-6);
+  expect_same_bits(scene, 1e-3, 2.5e-4);
+  scene.config.integrator.events = EventPlacement::step_end;
+  expect_same_bits(scene, 1e-3, 2.5e-4);
+}
+
+// The choice of the method, its patience and its looks: a fluid that is stiff, and one at the edge.
+TEST(Checkpoint, keeps_what_the_automatic_method_has_learnt) {
+  std::uint64_t changes = 0;
+  for (const auto& [modulus, viscosity] : {std::pair{1e9, 2.0}, {1e6, 2.0}, {1e9, 1e-3}}) {
+    SCOPED_TRACE(modulus);
+    Scene scene = case_one("auto", 1e-4);
+    scene.config.viscoelasticity = ViscoelasticityConfig{modulus, viscosity};
+    const auto whole = expect_same_bits(scene, 1e-3, 5e-5);
+    changes += whole.simulation->statistics().method->changes;
+    EXPECT_GE(whole.checkpoints.size(), 10U);
+  }
+  EXPECT_GT(changes, 0U);
+}
+
+/// A short jet to a near collector: beads land all the time.
+Scene landing_scene(const std::string& method) {
+  Scene scene = case_one(method, 1e-5);
+  scene.config.collector = CollectorConfig{1 * cm};
+  scene.config.field = FieldConfig{.potential = {}, .strength = 3e5};
+  return scene;
+}
+
+TEST(Checkpoint, keeps_the_pace_of_the_landings) {
+  for (const std::string method : {"dormand-prince", "auto"}) {
+    SCOPED_TRACE(method);
+    const auto whole = expect_same_bits(landing_scene(method), 4e-3, 3e-4);
+    EXPECT_GT(whole.simulation->statistics().landings, 20U);
+    bool passing = false, landed = false;
+    for (const Checkpoint& c : whole.checkpoints) {
+      passing |= !c.at("jet.absorbing_plane").empty();
+      landed |= !c.at("jet.landed_bead").empty();
+    }
+    EXPECT_TRUE(passing);
+    EXPECT_TRUE(landed);
+  }
+}
+
+TEST(Checkpoint, keeps_the_times_of_the_refinements) {
+  Scene scene = refined_case(0.2 * cm, 2e-4);
+  EXPECT_GT(expect_same_bits(scene, 4e-3, 5e-4).simulation->statistics().refinements, 2U);
+  scene.config.integrator.events = EventPlacement::step_end;
+  EXPECT_GT(expect_same_bits(scene, 4e-3, 5e-4).simulation->statistics().refinements, 2U);
+}
+
+/// A jagged chain that flies apart.
+Scene charged_chain(std::size_t beads, const std::string& solver) {
+  Scene scene = chain_scene();
+  for (std::size_t k = 0; k < beads; ++k) {
+    const auto s = static_cast<double>(k);
+    add_bead(scene, pvp_bead({2e-4 * s, 1e-4 * std::sin(0.3 * s), 1e-4 * std::cos(0.3 * s)}));
+  }
+  scene.config.coulomb = CoulombConfig{.solver = solver, .tolerance = 1e-4, .leaf = 8};
+  scene.config.viscoelasticity = ViscoelasticityConfig{pvp::modulus, pvp::viscosity};
+  integrate(scene, "dormand-prince", 1e-6);
+  return scene;
+}
+
+TEST(Checkpoint, goes_on_with_the_same_bits_with_every_solver) {
+  for (const std::string solver : {"treecode", "fmm", "auto"}) {
+    SCOPED_TRACE(solver);
+    Scene scene = charged_chain(300, solver);
+    scene.config.coulomb->check_every = 7;
+    const auto whole = expect_same_bits(scene, 2e-5, 4e-6);
+    EXPECT_GT(whole.checkpoints.back().at("dynamics.Coulomb.solver.checks").at(0), 0);
+  }
+}
+
+// An error that no expansion of second order keeps: the solver becomes stricter and stricter.
+TEST(Checkpoint, keeps_how_strict_a_solver_has_become) {
+  for (const std::string solver : {"treecode", "fmm"}) {
+    SCOPED_TRACE(solver);
+    Scene scene = charged_chain(400, solver);
+    scene.config.coulomb->tolerance_norm = ToleranceNorm::per_bead;
+    scene.config.coulomb->order = 2, scene.config.coulomb->opening = 0.99;
+    scene.config.coulomb->tolerance = 1e-2, scene.config.coulomb->check_every = 3;
+    const auto whole = expect_same_bits(scene, 2e-5, 4e-6);
+    std::printf("violations %g\n",
+                whole.checkpoints.back().at("dynamics.Coulomb.solver.violations").at(0));
+  }
+}
+
+/// Prices between which a jet of some beads falls, by the number of charges.
+CostModel prices(double crossover) {
+  CostModel costs{.charges = {1, crossover, 1000}, .tolerances = {1e-8, 1e-2}};
+  const auto set = [&](std::size_t solver, std::vector<double> s) {
+    s.insert(s.end(), s.begin(), s.end());
+    costs.seconds[solver] = std::move(s);
+  };
+  set(0, {1, crossover, 1000});
+  set(1, {crossover, crossover, crossover});
+  set(2, {1e6, 1e6, 1e6});
+  return costs;
+}
+
+TEST(Checkpoint, keeps_the_choice_of_the_automatic_solver) {
+  Scene scene = landing_scene("dormand-prince");
+  scene.config.coulomb = CoulombConfig{.solver = "auto", .tolerance = 1e-3, .leaf = 8};
+  scene.costs = prices(12);
+  const auto whole = expect_same_bits(scene, 3e-3, 2e-4);
+  bool later = false, both = false;
+  for (const Checkpoint& c : whole.checkpoints) {
+    const bool tree = c.at("dynamics.Coulomb.solver.chosen").at(0) == 1;
+    both |= later && !tree, later |= tree;
+    std::printf("chosen %g charges %g\n", c.at("dynamics.Coulomb.solver.chosen").at(0),
+                c.at("dynamics.Coulomb.solver.charges").at(0));
+  }
+  EXPECT_TRUE(later);
+}
+
+// What the run was to end at later has no say in it.
+TEST(Checkpoint, is_none_of_a_step_that_was_cut_for_the_end) {
+  const Scene scene = case_one("dormand-prince", 1e-6);
+  CheckedRun brief(scene, 1e-4), whole(scene, 1e-4);
+  brief.simulation->run_until(5e-4);
+  whole.simulation->run_until(1e-3);
+  ASSERT_GE(brief.checkpoints.size(), 3U);
+  EXPECT_LT(time_of(brief.checkpoints.back()), 5e-4);
+  for (std::size_t i = 0; i < brief.checkpoints.size(); ++i)
+    expect_equal(brief.checkpoints[i], whole.checkpoints[i], std::to_string(i));
+}
+
+TEST(Checkpoint, comes_at_the_first_step_after_each_multiple_and_cuts_none) {
+  const Scene scene = case_one("dormand-prince", 1e-6);
+  CheckedRun run(scene, 1e-4);
+  std::vector<double> ends{0};
+  run.simulation->after_each_step([&](const Simulation& s) { ends.push_back(s.jet().time); });
+  run.simulation->run_until(1.05e-3);
+  std::vector<double> expected;
+  for (std::size_t k = 1; k <= 10; ++k)
+    expected.push_back(*std::ranges::lower_bound(ends, static_cast<double>(k) * 1e-4));
+  expected.erase(std::unique(expected.begin(), expected.end()), expected.end());
+  std::vector<double> times;
+  for (const Checkpoint& c : run.checkpoints) times.push_back(time_of(c));
+  EXPECT_EQ(times, expected);
+}
+
+TEST(Checkpoint, shows_observers_what_they_have_not_seen) {
+  const Scene scene = case_one("dormand-prince", 1e-6);
+  CheckedRun whole(scene, 3e-4);
+  std::vector<std::vector<double>> all, rest;
+  whole.simulation->add(std::make_unique<Watch>(2e-5, [&](const JetSnapshot& s) {
+    all.emplace_back(s.columns.flat.begin(), s.columns.flat.end());
+    all.back().push_back(s.time);
+  }));
+  whole.simulation->run_until(1e-3);
+  CheckedRun continued(scene, 3e-4);
+  continued.simulation->restore(whole.checkpoints.at(1));
+  continued.simulation->add(std::make_unique<Watch>(2e-5, [&](const JetSnapshot& s) {
+    rest.emplace_back(s.columns.flat.begin(), s.columns.flat.end());
+    rest.back().push_back(s.time);
+  }));
+  continued.simulation->run_until(1e-3);
+  const auto first = std::ranges::find_if(all, [&](const auto& row) {
+    return row.back() >= time_of(whole.checkpoints[1]);
+  });
+  EXPECT_EQ(rest, std::vector(first, all.end()));
+}
+
+TEST(Checkpoint, of_another_scene_or_damaged_is_refused) {
+  const Scene scene = case_one("dormand-prince", 1e-6);
+  CheckedRun run(scene, 1e-4);
+  run.simulation->run_until(3e-4);
+  const Checkpoint good = run.checkpoints.back();
+  Scene without_stress = scene;
+  without_stress.config.viscoelasticity.reset();
+  Scene refined = scene;
+  refined.config.refinement = RefinementConfig{.length = 1e-3, .interval = 1e-4};
+  EXPECT_THROW(build_simulation(without_stress)->restore(good), InputError);
+  EXPECT_THROW(build_simulation(refined)->restore(good), InputError);
+  Checkpoint shorter = good, less = good;
+  shorter.at("jet.charge").pop_back();
+  less.erase("step");
+  EXPECT_THROW(build_simulation(scene)->restore(shorter), InputError);
+  EXPECT_THROW(build_simulation(scene)->restore(less), InputError);
+  EXPECT_NO_THROW(build_simulation(scene)->restore(good));
+}
+
+// Every number that is kept matters: a run that goes on without it is another one, some of the time.
+TEST(Checkpoint, without_any_of_its_parts_gives_other_bits) {
+  const Scene scene = landing_scene("auto");
+  const auto lost = [&](const std::string& name, double instead) {
+    CheckedRun whole(scene, 3e-4);
+    whole.simulation->run_until(3e-3);
+    bool other = false;
+    for (std::size_t k = 0; k + 1 < whole.checkpoints.size() && !other; ++k) {
+      Checkpoint c = whole.checkpoints[k];
+      std::ranges::fill(c.at(name), instead);
+      CheckedRun rest(scene, 3e-4);
+      rest.simulation->restore(c);
+      rest.simulation->run_until(3e-3);
+      other = rest.simulation->jet().y != whole.simulation->jet().y
+              || rest.simulation->statistics().evaluations
+                     != whole.simulation->statistics().evaluations;
+    }
+    return other;
+  };
+  const double never = std::numeric_limits<double>::infinity();
+  for (const auto& [name, fresh] : std::vector<std::pair<std::string, double>>{
+           {"step", 0},
+           {"expected_event", never},
+           {"restart_step", 0},
+           {"step_size_control.previous_error", 1e-4},
+           {"integrator.chosen", 0},
+           {"integrator.steps_to_look", 8},
+           {"landing.steps_per_landing", 100}})
+    EXPECT_TRUE(lost(name, fresh)) << name;
+}
+
+} // namespace
+} // namespace ehdjet
