@@ -137,18 +137,20 @@ void go_on_from(const std::string& file, Simulation& simulation, const Scene& sc
                                  file, *d));
   simulation.restore(before.checkpoint());
   if (const double t = simulation.jet().time; t >= scene.config.run.end_time)
-    throw InputError(fmt::format("{} cannot be continued: its checkpoint at t = {:.9g} s is "
-                                 "not before run.end_time = {} s",
-                                 file, t, scene.config.run.end_time));
+    throw InputError(
+        fmt::format("{} cannot be continued: its checkpoint at t = {:.9g} s is "
+                    "not before run.end_time = {} s",
+                    file, t, scene.config.run.end_time));
 }
 
 void refuse_overwriting(const std::filesystem::path& continued,
                         const std::filesystem::path& output) {
   std::error_code ignored;
   if (std::filesystem::equivalent(continued, output, ignored))
-    throw InputError(fmt::format("{} holds the run up to its checkpoint: choose another name "
-                                 "for its continuation with -o",
-                                 continued.string()));
+    throw InputError(
+        fmt::format("{} holds the run up to its checkpoint: choose another name "
+                    "for its continuation with -o",
+                    continued.string()));
 }
 
 std::map<std::string, std::string> environment_of(const Simulation& simulation,

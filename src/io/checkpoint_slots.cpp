@@ -57,7 +57,8 @@ void create_slots(hid_t file, const Checkpoint& checkpoint) {
     const Handle part = create_group(group, slot_name(slot).c_str());
     for (const char* name : {"offset", "numbers"})
       create_list(part, name,
-                  std::string(name) == "offset" ? native(std::uint64_t{}) : native(double{}));
+                  std::string(name) == "offset" ? native(std::uint64_t{})
+                                                : native(double{}));
   }
 }
 

@@ -15,8 +15,7 @@ void archive(const Archive& a, RunStatistics& s) {
   a("evaluations", s.evaluations), a("steps", s.steps), a("rejected", s.rejected);
   a("insertions", s.insertions), a("releases", s.releases), a("landings", s.landings);
   a("refinements", s.refinements);
-  if (s.method)
-    a("method_since", s.method->since), a("method_changes", s.method->changes);
+  if (s.method) a("method_since", s.method->since), a("method_changes", s.method->changes);
   a("coulomb_error", s.coulomb_error), a("coulomb_violations", s.coulomb_violations);
   a("coincident_pairs", s.coincident_pairs);
   a("shortest_step", s.shortest_step), a("longest_step", s.longest_step);

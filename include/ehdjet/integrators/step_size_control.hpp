@@ -22,9 +22,8 @@ public:
   /// The next attempt after a step h with error > 1 or not a number.
   double after_rejected(double h, double error);
 
-  void archive(const Archive& a) {
-    a("previous_error", previous_error_), a("rejected", rejected_);
-  }
+  /// After an accepted step.
+  void archive(const Archive& a) { a("previous_error", previous_error_); }
 
 private:
   int order_;

@@ -119,8 +119,8 @@ private:
   double checkpoint_interval_ = 0;         // [s]
   double checkpoint_due_ = std::numeric_limits<double>::infinity(); // [s]
   CheckpointSink checkpoint_sink_;
-  double restored_at_ = 0;                 // time of the checkpoint that this run goes on from [s]
-  std::vector<double> snapshot_;           // a state inside a step
+  double restored_at_ = 0;       // time of the checkpoint that this run goes on from [s]
+  std::vector<double> snapshot_; // a state inside a step
   std::vector<DepositedBead> deposited_;
   std::vector<RefinementRecord> refined_;
 };
