@@ -1,6 +1,7 @@
 #include "ehdjet/core/error.hpp"
 
 #include <gtest/gtest.h>
+#include <omp.h>
 
 #include <algorithm>
 #include <cmath>
@@ -19,15 +20,26 @@ namespace {
 
 using namespace test;
 
-/// A run with its checkpoints.
+/// A run with its checkpoints and what it was then.
 struct CheckedRun {
+  struct Moment {
+    JetState jet;
+    Ledger ledger;
+    RunStatistics statistics;
+  };
   CheckedRun(const Scene& scene, double interval)
       : simulation(build_simulation(scene)) {
-    simulation->make_checkpoints(interval,
-                                 [this](const Checkpoint& c) { checkpoints.push_back(c); });
+    simulation->make_checkpoints(interval, [this](const Checkpoint& c) {
+      checkpoints.push_back(c);
+      moments.push_back(moment_of(*simulation));
+    });
+  }
+  static Moment moment_of(const Simulation& s) {
+    return {s.jet(), s.ledger(), s.statistics()};
   }
   std::unique_ptr<Simulation> simulation;
   std::vector<Checkpoint> checkpoints;
+  std::vector<Moment> moments;
 };
 
 double time_of(const Checkpoint& c) {
@@ -47,25 +59,69 @@ void expect_equal(const Checkpoint& a, const Checkpoint& b, const std::string& w
     EXPECT_EQ(list, other.at(name)) << what << ' ' << name;
 }
 
-void expect_same_end(const Simulation& whole, const Simulation& continued) {
-  EXPECT_EQ(whole.jet().time, continued.jet().time);
-  EXPECT_EQ(whole.jet().y, continued.jet().y);
-  EXPECT_EQ(whole.jet().charge, continued.jet().charge);
-  EXPECT_EQ(double(whole.ledger().inserted_charge),
-            double(continued.ledger().inserted_charge));
-  EXPECT_EQ(whole.ledger().impact_speed, continued.ledger().impact_speed);
-  const RunStatistics &a = whole.statistics(), &b = continued.statistics();
+void expect_same(const CompensatedSum& a, const CompensatedSum& b) {
+  EXPECT_EQ(a.leading(), b.leading());
+  EXPECT_EQ(a.carry(), b.carry());
+}
+
+void expect_same(const JetState& a, const JetState& b) {
+  EXPECT_EQ(a.time, b.time);
+  EXPECT_EQ(a.y, b.y);
+  EXPECT_EQ(a.mass, b.mass);
+  EXPECT_EQ(a.charge, b.charge);
+  EXPECT_EQ(a.volume, b.volume);
+  EXPECT_EQ(a.has_embryo, b.has_embryo);
+  EXPECT_EQ(a.absorbing_plane, b.absorbing_plane);
+  ASSERT_EQ(a.landed.size(), b.landed.size());
+  for (std::size_t i = 0; i < a.landed.size(); ++i) {
+    EXPECT_EQ(a.landed[i].bead, b.landed[i].bead);
+    EXPECT_EQ(a.landed[i].time, b.landed[i].time);
+    EXPECT_EQ(a.landed[i].radius, b.landed[i].radius);
+  }
+}
+
+void expect_same(const Ledger& a, const Ledger& b) {
+  EXPECT_EQ(a.inserted_beads, b.inserted_beads);
+  EXPECT_EQ(a.removed_beads, b.removed_beads);
+  expect_same(a.inserted_mass, b.inserted_mass);
+  expect_same(a.removed_mass, b.removed_mass);
+  expect_same(a.inserted_charge, b.inserted_charge);
+  expect_same(a.removed_charge, b.removed_charge);
+  expect_same(a.inserted_volume, b.inserted_volume);
+  expect_same(a.removed_volume, b.removed_volume);
+  EXPECT_EQ(a.release_speed, b.release_speed);
+  EXPECT_EQ(a.impact_speed, b.impact_speed);
+  EXPECT_EQ(a.collector_radius, b.collector_radius);
+}
+
+void expect_same(const RunStatistics& a, const RunStatistics& b) {
   EXPECT_EQ(a.evaluations, b.evaluations);
   EXPECT_EQ(a.steps, b.steps);
   EXPECT_EQ(a.rejected, b.rejected);
   EXPECT_EQ(a.insertions, b.insertions);
+  EXPECT_EQ(a.releases, b.releases);
   EXPECT_EQ(a.landings, b.landings);
   EXPECT_EQ(a.refinements, b.refinements);
   EXPECT_EQ(a.method.has_value(), b.method.has_value());
-  if (a.method) {
+  if (a.method && b.method) {
     EXPECT_EQ(a.method->in_use, b.method->in_use);
+    EXPECT_EQ(a.method->since, b.method->since);
     EXPECT_EQ(a.method->changes, b.method->changes);
   }
+  EXPECT_EQ(a.coulomb_error, b.coulomb_error);
+  EXPECT_EQ(a.coulomb_violations, b.coulomb_violations);
+  EXPECT_EQ(a.coincident_pairs, b.coincident_pairs);
+  EXPECT_EQ(a.shortest_step, b.shortest_step);
+  EXPECT_EQ(a.longest_step, b.longest_step);
+}
+
+void expect_same(const CheckedRun::Moment& a, const CheckedRun::Moment& b) {
+  expect_same(a.jet, b.jet);
+  expect_same(a.ledger, b.ledger);
+  expect_same(a.statistics, b.statistics);
+}
+void expect_same_end(const Simulation& whole, const Simulation& continued) {
+  expect_same(CheckedRun::moment_of(whole), CheckedRun::moment_of(continued));
 }
 
 /// Runs a scene with checkpoints, goes on from each of them and compares all later ones and the
@@ -77,6 +133,7 @@ CheckedRun expect_same_bits(const Scene& scene, double end_time, double interval
   for (std::size_t k = 0; k < whole.checkpoints.size(); ++k) {
     CheckedRun rest(scene, interval);
     rest.simulation->restore(whole.checkpoints[k]);
+    expect_same(whole.moments[k], CheckedRun::moment_of(*rest.simulation));
     rest.simulation->run_until(end_time);
     EXPECT_EQ(rest.checkpoints.size(), whole.checkpoints.size() - k - 1);
     for (std::size_t i = 0; i < rest.checkpoints.size(); ++i)
@@ -184,6 +241,17 @@ TEST(Checkpoint, goes_on_with_the_same_bits_with_every_solver) {
     const auto whole = expect_same_bits(scene, 2e-5, 4e-6);
     EXPECT_GT(whole.checkpoints.back().at("dynamics.Coulomb.solver.checks").at(0), 0);
   }
+}
+
+// So many beads that the solvers share them out among threads.
+TEST(Checkpoint, goes_on_with_the_same_bits_for_the_same_threads) {
+  const int threads = omp_get_max_threads();
+  omp_set_num_threads(2);
+  for (const std::string solver : {"direct", "treecode", "fmm"}) {
+    SCOPED_TRACE(solver);
+    expect_same_bits(charged_chain(1500, solver), 2e-5, 4e-6);
+  }
+  omp_set_num_threads(threads);
 }
 
 // As if there had been violations before the first checkpoint.
@@ -310,6 +378,27 @@ bool matters(const Scene& scene, double end_time, double interval, const std::st
       return true;
   }
   return false;
+}
+
+TEST(Checkpoint, keeps_the_round_off_of_the_time) {
+  Scene scene = case_one();
+  integrate_with_fixed_steps(scene, "rk4", 1e-6);
+  CheckedRun whole(scene, 1e-5);
+  whole.simulation->run_until(1e-4);
+  bool other = false;
+  for (const Checkpoint& c : whole.checkpoints) other |= c.at("time").at(1) != 0;
+  EXPECT_TRUE(other);
+  const auto rest = build_simulation(scene);
+  const Checkpoint& last = whole.checkpoints.back();
+  rest->restore(last);
+  Checkpoint again;
+  rest->make_checkpoints(1e-9, [&](const Checkpoint& c) {
+    if (again.empty()) again = c;
+  });
+  rest->run_until(1e-4);
+  CompensatedSum time(last.at("time").at(0), last.at("time").at(1));
+  time += 1e-6;
+  EXPECT_EQ(again.at("time"), (std::vector<double>{time.leading(), time.carry()}));
 }
 
 // A checkpoint has nothing that does not matter: without any of its numbers the jet is another one.
