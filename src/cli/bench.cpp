@@ -107,7 +107,7 @@ Measured measure(Scene scene, double stationary_from, std::size_t threads, bool 
 
   const double end = scene.config.run.end_time;
   std::optional<Progress> progress;
-  if (!quiet) progress.emplace(end);
+  if (!quiet) progress.emplace(0.0, end);
   TimeMean all(0), stationary(stationary_from);
   double time = 0;
   auto beads = static_cast<double>(simulation->jet().links());

@@ -22,8 +22,9 @@ std::string duration(double seconds) {
 
 } // namespace
 
-Progress::Progress(double end_time)
+Progress::Progress(double start_time, double end_time)
     : terminal_(isatty(STDERR_FILENO) != 0)
+    , start_time_(start_time)
     , end_time_(end_time)
     , interval_(terminal_ ? terminal_interval : plain_interval)
     , next_(interval_) {}
@@ -39,7 +40,7 @@ void Progress::show(const Simulation& simulation) {
   const double t = simulation.jet().time;
   recent_.push_back({wall, t});
   if (recent_.size() > samples) recent_.pop_front();
-  const Sample first = recent_.size() > 1 ? recent_.front() : Sample{0, 0};
+  const Sample first = recent_.size() > 1 ? recent_.front() : Sample{0, start_time_};
   const double left = (wall - first.wall) * (end_time_ - t) / (t - first.time);
 
   const double part = t / end_time_;

@@ -11,7 +11,7 @@ namespace ehdjet::cli {
 /// terminal, a plain line now and then elsewhere. Writes to standard error.
 class Progress {
 public:
-  explicit Progress(double end_time);
+  Progress(double start_time, double end_time);
   void show(const Simulation& simulation);
   /// Leaves the terminal at the start of an empty line.
   void finish() const;
@@ -23,7 +23,7 @@ private:
   [[nodiscard]] double seconds() const;
 
   bool terminal_;
-  double end_time_, interval_, next_;
+  double start_time_, end_time_, interval_, next_;
   std::deque<Sample>
       recent_; // the cost of a millisecond grows with the jet: only the last ones
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();

@@ -2,6 +2,7 @@
 
 #include "ehdjet/core/error.hpp"
 #include "ehdjet/io/run_file.hpp"
+#include "ehdjet/io/run_reader.hpp"
 #include "ehdjet/scene/read_scene.hpp"
 #include "ehdjet/simulation/build.hpp"
 
@@ -12,9 +13,11 @@
 #include <cstdint>
 #include <filesystem>
 #include <fmt/format.h>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "calibrate.hpp"
@@ -27,7 +30,7 @@ namespace ehdjet::cli {
 namespace {
 
 struct RunOptions {
-  std::string scene, output, calibration;
+  std::string scene, output, calibration, continued;
   std::vector<std::string> overrides;
   std::optional<std::size_t> threads;
   bool quiet = false, force = false;
@@ -70,8 +73,9 @@ std::string coulomb_method(const Simulation& s) {
 /// Says so when a check of the Coulomb force finds more than the tolerance.
 class ViolationLog {
 public:
-  explicit ViolationLog(double tolerance)
-      : tolerance_(tolerance) {}
+  ViolationLog(double tolerance, const Simulation& s)
+      : tolerance_(tolerance)
+      , logged_(s.statistics().coulomb_violations) {}
   void look(const Simulation& s) {
     const RunStatistics& statistics = s.statistics();
     if (statistics.coulomb_violations == logged_) return;
@@ -85,7 +89,7 @@ public:
 
 private:
   double tolerance_;
-  std::uint64_t logged_ = 0;
+  std::uint64_t logged_;
 };
 
 std::string summary(const Simulation& s, const Scene& scene,
@@ -124,6 +128,40 @@ std::string summary(const Simulation& s, const Scene& scene,
   return text + fmt::format("  written to    {}\n", file.string());
 }
 
+/// Takes over the jet of a run of the same scene that another file has a checkpoint of.
+void go_on_from(const std::string& file, Simulation& simulation, const Scene& scene) {
+  const RunReader before(file);
+  if (const auto d = difference_from(before.scene_resolved(), scene.config))
+    throw InputError(fmt::format("{} cannot be continued with this scene: {}. Only "
+                                 "run.end_time and [output] may differ",
+                                 file, *d));
+  simulation.restore(before.checkpoint());
+  if (const double t = simulation.jet().time; t >= scene.config.run.end_time)
+    throw InputError(
+        fmt::format("{} cannot be continued: its checkpoint at t = {:.9g} s is "
+                    "not before run.end_time = {} s",
+                    file, t, scene.config.run.end_time));
+}
+
+void refuse_overwriting(const std::filesystem::path& continued,
+                        const std::filesystem::path& output) {
+  std::error_code ignored;
+  if (std::filesystem::equivalent(continued, output, ignored))
+    throw InputError(
+        fmt::format("{} holds the run up to its checkpoint: choose another name "
+                    "for its continuation with -o",
+                    continued.string()));
+}
+
+std::map<std::string, std::string> environment_of(const Simulation& simulation,
+                                                  const std::string& continued) {
+  auto environment = cli::environment();
+  if (continued.empty()) return environment;
+  environment["continued_from"] = continued;
+  environment["continued_at"] = fmt::format("{} s", simulation.jet().time);
+  return environment;
+}
+
 void run(const RunOptions& options) {
   const Scene scene =
       read_scene(options.scene, with_calibration(options.overrides, options.calibration));
@@ -134,24 +172,31 @@ void run(const RunOptions& options) {
       options.output.empty()
           ? std::filesystem::path(options.scene).filename().replace_extension(".h5")
           : std::filesystem::path(options.output);
+  if (!options.continued.empty()) {
+    refuse_overwriting(options.continued, path);
+    go_on_from(options.continued, *simulation, scene);
+  }
   RunFile file(path, options.force,
                {.scene_file = options.scene,
                 .scene_given = scene.given,
                 .scene_resolved = resolved_toml(scene.config),
-                .environment = environment()},
+                .environment = environment_of(*simulation, options.continued)},
                scene.config.output.flush);
   add_observers(*simulation, file, scene);
+  if (scene.config.output.checkpoints)
+    simulation->make_checkpoints(*scene.config.output.checkpoints,
+                                 [&](const Checkpoint& c) { file.keep(c); });
 
-  const double end = scene.config.run.end_time;
+  const double start = simulation->jet().time, end = scene.config.run.end_time;
   if (!options.quiet)
     fmt::print(stderr, "{}{}simulating {:.6g} s into {}\n", scene.config.title,
-               scene.config.title.empty() ? "" : "\n", end, path.string());
+               scene.config.title.empty() ? "" : "\n", end - start, path.string());
   std::optional<Progress> progress;
-  if (!options.quiet) progress.emplace(end);
+  if (!options.quiet) progress.emplace(start, end);
   const InterruptGuard interrupt;
   std::optional<ViolationLog> violations;
   if (const auto& c = scene.config.coulomb; c && c->check_every && !options.quiet)
-    violations.emplace(c->tolerance);
+    violations.emplace(c->tolerance, *simulation);
   simulation->after_each_step([&](const Simulation& s) {
     if (violations) violations->look(s);
     if (progress) progress->show(s);
@@ -201,6 +246,11 @@ void add_run_command(CLI::App& app) {
                    "Override a key: table.key=value (repeatable)")
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
+  command
+      ->add_option("--continue", options->continued,
+                   "Go on from the last checkpoint (output.checkpoints) of a run of this "
+                   "scene; with another run.end_time and [output], if you like")
+      ->type_name("FILE.h5");
   add_threads_option(*command, options->threads);
   add_calibration_option(*command, options->calibration);
   command->add_flag("--quiet", options->quiet, "Print nothing but errors");

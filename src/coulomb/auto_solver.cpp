@@ -50,6 +50,15 @@ public:
     for (const auto& solver : solvers_)
       if (solver) solver->tighten();
   }
+  void archive(const Archive& a) override {
+    a("chosen", chosen_), a("charges", charges_);
+    a("switches", switches_), a("tightened", tightened_);
+    if (!a.is_reading()) return;
+    if (chosen_ >= solvers_.size())
+      throw InputError("the checkpoint is damaged: there is no such Coulomb solver");
+    for (auto& solver : solvers_) solver.reset();
+    if (charges_ > 0) make_chosen();
+  }
 
 private:
   void choose(std::size_t n) {
@@ -67,13 +76,14 @@ private:
       if (solvers_[chosen_]) ++switches_;
       chosen_ = index;
     }
-    auto& solver = solvers_[chosen_];
-    if (solver) return;
+    if (!solvers_[chosen_]) make_chosen();
+  }
+  void make_chosen() {
     SolverOptions options = options_;
     options.solver = priced_solvers[chosen_];
     options.check_every.reset();
-    solver = make_coulomb_solver(options);
-    for (std::size_t i = 0; i < tightened_; ++i) solver->tighten();
+    solvers_[chosen_] = make_coulomb_solver(options);
+    for (std::size_t i = 0; i < tightened_; ++i) solvers_[chosen_]->tighten();
   }
 
   SolverOptions options_;

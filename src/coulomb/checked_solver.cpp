@@ -44,6 +44,11 @@ public:
                        checks_.violations);
   }
   void tighten() override { solver_->tighten(); }
+  void archive(const Archive& a) override {
+    a("calls", calls_), a("checks", checks_.number), a("violations", checks_.violations);
+    a("last_error", checks_.last), a("largest_error", checks_.largest);
+    solver_->archive(a.part("solver"));
+  }
   [[nodiscard]] std::optional<CoulombChecks> checks() const override { return checks_; }
 
 private:

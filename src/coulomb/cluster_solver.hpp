@@ -53,6 +53,7 @@ public:
 
   [[nodiscard]] std::string description() const final;
   void tighten() final { strictness_ /= 2; }
+  void archive(const Archive& a) final { a("strictness", strictness_); }
 
 protected:
   /// Allocates what further arrays the present tree needs.

@@ -152,6 +152,11 @@ StiffPart::Modes JetDynamics::fastest_modes() const {
   return modes;
 }
 
+void JetDynamics::archive(const Archive& a) {
+  a("evaluations", evaluations_);
+  for (const auto& term : terms_) term->archive(a.part(term->name()));
+}
+
 std::uint64_t JetDynamics::coincident_pairs() const {
   std::uint64_t pairs = 0;
   for (const auto& term : terms_) pairs += term->coincident_pairs();

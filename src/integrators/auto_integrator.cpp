@@ -114,6 +114,16 @@ void AutoIntegrator::restart() {
   new_step_ = true;
 }
 
+void AutoIntegrator::archive(const Archive& a) {
+  bool is_implicit = active_ == &implicit_;
+  a("is_implicit", is_implicit);
+  active_ = &explicit_;
+  if (is_implicit) active_ = &implicit_;
+  a("chosen", chosen_), a("rejected", rejected_), a("accepted", accepted_);
+  a("steps_to_look", steps_to_look_), a("in_a_row", in_a_row_);
+  a("patience", patience_), a("steps", steps_), a("left_implicit", left_implicit_);
+}
+
 double AutoIntegrator::initial_step(OdeSystem& system, double t, std::span<double> y) {
   return active_->initial_step(system, t, y);
 }

@@ -41,6 +41,7 @@ public:
   }
 
   [[nodiscard]] double next_time() const override { return schedule_.next(); }
+  void skip_to(double time) override { schedule_.skip_to(time); }
 
   void observe(const JetSnapshot& snapshot) override {
     EHDJET_EXPECTS(snapshot.columns.beads == snapshot.jet.beads());

@@ -64,6 +64,7 @@ public:
                 : nullptr) {}
 
   [[nodiscard]] double next_time() const override { return schedule_.next(); }
+  void skip_to(double time) override { schedule_.skip_to(time); }
 
   void observe(const JetSnapshot& snapshot) override {
     writer_.write([&] { append(snapshot); });

@@ -44,6 +44,10 @@ void RunFile::note_coulomb(const std::string& method) {
   writer_->note("coulomb", method);
 }
 
+void RunFile::keep(const Checkpoint& checkpoint) {
+  writer_->keep(checkpoint);
+}
+
 void RunFile::flush() {
   writer_->flush();
 }

@@ -10,6 +10,7 @@
 #include <sstream>
 #include <system_error>
 
+#include "checkpoint_slots.hpp"
 #include "hdf5.hpp"
 
 namespace ehdjet {
@@ -281,6 +282,16 @@ BudgetTable RunReader::budget() const {
       table.columns.push_back(file.rows<double>(path, 0, rows));
     }
     return table;
+  });
+}
+
+Checkpoint RunReader::checkpoint() const {
+  return impl_->guard([&] {
+    const auto checkpoint = hdf5::read_current_slot(impl_->file);
+    if (!checkpoint)
+      impl_->reject("has no checkpoint: set output.checkpoints in the scene, to less than "
+                    "run.end_time");
+    return *checkpoint;
   });
 }
 

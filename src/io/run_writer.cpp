@@ -9,6 +9,7 @@
 #include <system_error>
 #include <unistd.h>
 
+#include "checkpoint_slots.hpp"
 #include "file_driver.hpp"
 
 namespace ehdjet {
@@ -187,6 +188,15 @@ void RunWriter::flush() {
     hdf5::FileDriver::of(file_).commit();
   });
   flushed_ = std::chrono::steady_clock::now();
+}
+
+// Two commits: at no time does the file name a slot that is not complete.
+void RunWriter::keep(const Checkpoint& checkpoint) {
+  std::uint64_t slot = 0;
+  guard([&] { slot = hdf5::fill_free_slot(file_, checkpoint); });
+  flush();
+  guard([&] { hdf5::make_current(file_, slot); });
+  flush();
 }
 
 void RunWriter::finish(const std::string& status, const std::string& message,

@@ -43,6 +43,7 @@ public:
     notes_.emplace_back(std::move(name), std::move(value));
   }
   void flush();
+  void keep(const Checkpoint& checkpoint);
   void finish(const std::string& status, const std::string& message,
               const RunStatistics& statistics, const Ledger& ledger);
 

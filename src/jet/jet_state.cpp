@@ -29,6 +29,26 @@ bool JetState::is_landed(std::size_t bead) const {
                              [bead](const LandedBead& l) { return l.bead == bead; });
 }
 
+void archive(const Archive& a, JetState& jet) {
+  a("time", jet.time), a("y", jet.y);
+  a("mass", jet.mass), a("charge", jet.charge), a("volume", jet.volume);
+  a("has_embryo", jet.has_embryo), a("absorbing_plane", jet.absorbing_plane);
+  std::vector<double> bead, time, radius;
+  for (const LandedBead& l : jet.landed) {
+    bead.push_back(static_cast<double>(l.bead));
+    time.push_back(l.time), radius.push_back(l.radius);
+  }
+  a("landed_bead", bead), a("landed_time", time), a("landed_radius", radius);
+  if (!a.is_reading()) return;
+  const std::size_t n = jet.beads(), landed = bead.size();
+  if (n < 2 || jet.y.size() % n != 0 || jet.charge.size() != n || jet.volume.size() != n
+      || time.size() != landed || radius.size() != landed)
+    throw InputError("the checkpoint is damaged: its columns have different lengths");
+  jet.landed.clear();
+  for (std::size_t i = 0; i < landed; ++i)
+    jet.landed.push_back({static_cast<std::size_t>(bead[i]), time[i], radius[i]});
+}
+
 void insert_bead(JetState& jet, std::size_t at, const Bead& bead) {
   const std::size_t n = jet.beads();
   EHDJET_EXPECTS(n > 0 && at <= n);

@@ -218,6 +218,7 @@ void check_output(const SceneConfig& c, const SceneText& text) {
   for (const auto& [name, interval] : {std::pair{"observables", c.output.observables},
                                        {"frames", c.output.frames},
                                        {"budget", c.output.budget},
+                                       {"checkpoints", c.output.checkpoints},
                                        {"resolving_power", c.output.resolving_power}})
     if (interval && c.run.end_time / *interval > most_rows)
       text.fail(

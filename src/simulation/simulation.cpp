@@ -41,13 +41,18 @@ private:
   std::size_t beads_;
 };
 
-// An observer that cannot write knows what failed, but not when.
-void show(Observer& observer, const JetSnapshot& snapshot) {
+// Who cannot write knows what failed, but not when.
+template <class Write>
+void at_time(double t, const Write& write) {
   try {
-    observer.observe(snapshot);
+    write();
   } catch (const RunError& e) {
-    throw RunError(fmt::format("at t = {:.9g} s: {}", snapshot.time, e.what()));
+    throw RunError(fmt::format("at t = {:.9g} s: {}", t, e.what()));
   }
+}
+
+void show(Observer& observer, const JetSnapshot& snapshot) {
+  at_time(snapshot.time, [&] { observer.observe(snapshot); });
 }
 
 /// Smallest |d0 + s (d1 - d0)|^2 for s from 0 to 1.
@@ -101,11 +106,13 @@ void Simulation::add(std::unique_ptr<Event> event) {
 void Simulation::run_until(double end_time) {
   const WallClock clock;
   const double wall_before = statistics_.wall_time;
+  bool cut = false; // by the end: a run with a later end goes another way from here on
   while (jet_.time < end_time) {
     const double to_end = end_time - jet_.time;
     const double wanted = choose_step();
     const bool last =
         wanted >= (1 - 1e-9) * to_end; // leaves no remainder of round-off size
+    cut |= last;
     const double h = attempt_step(last ? to_end : wanted);
     const DenseStep step(jet_.time, h, jet_, *integrator_, *dynamics_);
 
@@ -136,11 +143,60 @@ void Simulation::run_until(double end_time) {
         if (i != found->index) events_[i]->overtaken(t1);
     apply_events(found ? found->index : events_.size());
     statistics_.wall_time = wall_before + clock.seconds();
+    if (jet_.time >= checkpoint_due_ && !cut) make_checkpoint();
     if (hook_) hook_(*this);
   }
   for (const auto& o : observers_)
     while (o->next_time() <= end_time)
       show(*o, {o->next_time(), std::as_const(jet_).columns(), jet_, ledger_, statistics_});
+}
+
+void Simulation::make_checkpoints(double interval, CheckpointSink sink) {
+  EHDJET_EXPECTS(interval > 0);
+  checkpoint_interval_ = interval, checkpoint_sink_ = std::move(sink);
+  checkpoint_due_ = next_checkpoint();
+}
+
+// Follows from the time alone, also in a run that goes on from a checkpoint.
+double Simulation::next_checkpoint() const {
+  double count = std::floor(jet_.time / checkpoint_interval_);
+  while (count * checkpoint_interval_ <= jet_.time) ++count;
+  return count * checkpoint_interval_;
+}
+
+void Simulation::make_checkpoint() {
+  integrator_->restart(); // who goes on from here has no derivatives of the stages either
+  Checkpoint checkpoint;
+  archive(Archive::into(checkpoint));
+  checkpoint_due_ = next_checkpoint();
+  at_time(jet_.time, [&] { checkpoint_sink_(checkpoint); });
+}
+
+void Simulation::restore(const Checkpoint& checkpoint) {
+  EHDJET_EXPECTS(observers_.empty() && step_observers_.empty());
+  const std::size_t columns = jet_.y.size() / jet_.beads(), events = events_.size();
+  archive(Archive::from(checkpoint));
+  if (jet_.y.size() != columns * jet_.beads() || restart_step_.size() != events
+      || (after_event_ && *after_event_ >= events))
+    throw InputError("the checkpoint is of another scene");
+  if (statistics_.method) statistics_.method->in_use = integrator_->method_in_use();
+  restored_at_ = jet_.time;
+  if (checkpoint_sink_) checkpoint_due_ = next_checkpoint();
+  dynamics_->bind(jet_);
+  integrator_->restart();
+}
+
+// All that the loop looks at before it writes to it, and nothing of the scene.
+void Simulation::archive(const Archive& a) {
+  ehdjet::archive(a.part("jet"), jet_);
+  ehdjet::archive(a.part("ledger"), ledger_);
+  ehdjet::archive(a.part("statistics"), statistics_);
+  a("time", time_), a("step", step_), a("expected_event", expected_event_);
+  a("restart_step", restart_step_), a("after_event", after_event_);
+  control_.archive(a.part("step_size_control"));
+  integrator_->archive(a.part("integrator"));
+  dynamics_->archive(a.part("dynamics"));
+  for (const auto& e : events_) e->archive(a.part(e->name()));
 }
 
 double Simulation::choose_step() {

@@ -28,6 +28,15 @@ FabricatedJet fabricated_jet(std::uint64_t k, bool with_stress) {
   return made;
 }
 
+Checkpoint fabricated_checkpoint(std::uint64_t k) {
+  const auto x = static_cast<double>(k);
+  Checkpoint c;
+  c["time"] = {x};
+  c["y"].assign(3000 + 4000 * (k % 3), x);
+  c["perhaps"].assign(k % 2, x);
+  return c;
+}
+
 Provenance fabricated_provenance() {
   return {"scenes/made up.toml",
           "given = \"ä\"\n",

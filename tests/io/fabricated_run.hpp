@@ -56,6 +56,9 @@ struct FabricatedJet {
 /// Frame k of a run whose chain grows, shrinks, has an embryo now and then and a landed bead.
 FabricatedJet fabricated_jet(std::uint64_t k, bool with_stress = true);
 
+/// Checkpoint k of a run whose lists grow and shrink, over several chunks.
+Checkpoint fabricated_checkpoint(std::uint64_t k);
+
 Provenance fabricated_provenance();
 
 /// Writes `frames` fabricated frames, a row and a deposited bead with each.

@@ -1,3 +1,4 @@
+#include "ehdjet/core/error.hpp"
 #include "ehdjet/io/run_file.hpp"
 #include "ehdjet/io/run_reader.hpp"
 
@@ -128,6 +129,29 @@ TEST(RunSurvival, dying_while_the_chunk_index_is_split_keeps_the_last_flush) {
       die_within_every_write(path, check, [&] { file.flush(); });
     }
     flushed = chunks;
+  }
+}
+
+TEST(RunSurvival, dying_while_a_checkpoint_is_written_keeps_the_last_one_or_has_the_next) {
+  const ScratchFolder folder;
+  const auto path = folder / "run.h5";
+  RunFile file(path, false, fabricated_provenance(), 1e9);
+  const auto frames = file.frames(1e-5, true);
+  for (std::uint64_t k = 0; k < 5; ++k) {
+    SCOPED_TRACE("checkpoint " + std::to_string(k));
+    frames->observe(fabricated_jet(k).snapshot());
+    const auto check = [&] {
+      const RunReader run(path);
+      try {
+        const Checkpoint c = run.checkpoint();
+        EXPECT_TRUE(c == fabricated_checkpoint(k)
+                    || (k > 0 && c == fabricated_checkpoint(k - 1)));
+      } catch (const InputError& e) {
+        EXPECT_EQ(k, 0U) << e.what();
+      }
+    };
+    die_within_every_write(path, check, [&] { file.keep(fabricated_checkpoint(k)); });
+    EXPECT_EQ(RunReader(path).checkpoint(), fabricated_checkpoint(k));
   }
 }
 

@@ -150,6 +150,7 @@ public:
       : schedule_(interval)
       , look_(std::move(look)) {}
   [[nodiscard]] double next_time() const override { return schedule_.next(); }
+  void skip_to(double time) override { schedule_.skip_to(time); }
   void observe(const JetSnapshot& snapshot) override {
     schedule_.advance();
     look_(snapshot);

@@ -12,6 +12,10 @@ public:
   CompensatedSum(
       double start = 0) // NOLINT(google-explicit-constructor): stands for a number
       : sum_(start) {}
+  /// The sum that had these parts.
+  CompensatedSum(double leading, double carry)
+      : sum_(leading)
+      , carry_(carry) {}
   CompensatedSum& operator+=(double term) {
     const double next = sum_ + term;
     carry_ +=
@@ -20,6 +24,8 @@ public:
     return *this;
   }
   operator double() const { return sum_ + carry_; } // NOLINT(google-explicit-constructor)
+  [[nodiscard]] double leading() const { return sum_; }
+  [[nodiscard]] double carry() const { return carry_; }
 
 private:
   double sum_, carry_ = 0;

@@ -1,5 +1,8 @@
 #pragma once
 
+#include "ehdjet/core/checkpoint.hpp"
+
+#include <cmath>
 #include <cstdint>
 
 namespace ehdjet {
@@ -12,6 +15,13 @@ public:
       , count_(first) {}
   [[nodiscard]] double next() const { return static_cast<double>(count_) * interval_; }
   void advance() { ++count_; }
+  /// Leaves out what lies before `time`.
+  void skip_to(double time) {
+    const double below = std::floor(time / interval_) - 1; // whatever the round-off
+    if (below > static_cast<double>(count_)) count_ = static_cast<std::uint64_t>(below);
+    while (next() < time) advance();
+  }
+  void archive(const Archive& a) { a("count", count_); }
 
 private:
   double interval_; // [s]

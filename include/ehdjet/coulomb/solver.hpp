@@ -1,5 +1,6 @@
 #pragma once
 
+#include "ehdjet/core/checkpoint.hpp"
 #include "ehdjet/core/columns.hpp"
 
 #include <cstddef>
@@ -67,6 +68,8 @@ public:
   [[nodiscard]] virtual std::string description() const { return std::string(name()); }
   /// Makes the criterion that keeps the tolerance stricter, after a violation.
   virtual void tighten() {}
+  /// What the next calls depend on besides their arguments.
+  virtual void archive(const Archive& /*a*/) {}
   /// None if nobody checks.
   [[nodiscard]] virtual std::optional<CoulombChecks> checks() const { return {}; }
 };

@@ -59,6 +59,9 @@ public:
     return terms_;
   }
 
+  /// What is not bound with the chain.
+  void archive(const Archive& a);
+
   /// Why a step of size h failed near this state, for a message to the user: the first bead and
   /// term whose force or rate is not a number or, if there is none, the term that pulls
   /// hardest at `bead`.

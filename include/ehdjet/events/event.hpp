@@ -1,5 +1,6 @@
 #pragma once
 
+#include "ehdjet/core/checkpoint.hpp"
 #include "ehdjet/events/dense_step.hpp"
 #include "ehdjet/jet/ledger.hpp"
 
@@ -56,6 +57,9 @@ public:
   /// The motion right after the event has another time scale than before it: the next step size
   /// is the one that suited after the last event of this kind, not the last step's proposal.
   [[nodiscard]] virtual bool restarts_motion() const { return false; }
+
+  /// What the event remembers between steps.
+  virtual void archive(const Archive& /*a*/) {}
 };
 
 } // namespace ehdjet

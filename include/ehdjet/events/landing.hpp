@@ -34,6 +34,9 @@ public:
   void anticipate(double t, JetState& jet) const override;
   void list_inner_times(std::vector<double>& times) const override;
   void apply(EventContext& context) override;
+  void archive(const Archive& a) override {
+    a("steps_per_landing", steps_per_landing_), a("last_step", last_step_);
+  }
 
 private:
   /// A bead at the collector.

@@ -34,6 +34,7 @@ public:
   }
   void apply(EventContext& context) override;
   [[nodiscard]] bool restarts_motion() const override { return true; }
+  void archive(const Archive& a) override { schedule_.archive(a.part("schedule")); }
 
 private:
   void pass(double t);

@@ -25,6 +25,10 @@ public:
   [[nodiscard]] std::optional<CoulombChecks> checks() const override {
     return solver_->checks();
   }
+  void archive(const Archive& a) override {
+    a("coincident_pairs", coincident_pairs_);
+    solver_->archive(a.part("solver"));
+  }
 
 private:
   std::unique_ptr<CoulombSolver> solver_;

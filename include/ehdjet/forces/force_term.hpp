@@ -1,5 +1,6 @@
 #pragma once
 
+#include "ehdjet/core/checkpoint.hpp"
 #include "ehdjet/core/columns.hpp"
 #include "ehdjet/coulomb/solver.hpp"
 #include "ehdjet/forces/link_derivatives.hpp"
@@ -32,6 +33,8 @@ public:
   [[nodiscard]] virtual std::string method() const { return {}; }
   /// Comparisons with an exact method, if there are such.
   [[nodiscard]] virtual std::optional<CoulombChecks> checks() const { return {}; }
+  /// What the term keeps from one evaluation to the next.
+  virtual void archive(const Archive& /*a*/) {}
 };
 
 /// A force term with an internal variable per link, integrated with the jet.

@@ -39,6 +39,7 @@ public:
   }
   void commit(std::vector<double>& y) override;
   void restart() override;
+  void archive(const Archive& a) override;
   double initial_step(OdeSystem& system, double t, std::span<double> y) override;
 
 private:

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "ehdjet/core/checkpoint.hpp"
 #include "ehdjet/integrators/ode_system.hpp"
 
 #include <cstddef>
@@ -49,6 +50,8 @@ public:
   virtual void commit(std::vector<double>& y) = 0;
   /// Forget what is known about f(t, y). Call after anything but `commit` has changed y.
   virtual void restart() = 0;
+  /// What the next steps depend on after a restart.
+  virtual void archive(const Archive& /*a*/) {}
 
   /// A first step that changes no component by more than a hundredth of its error scale's size
   /// (after Hairer, Norsett & Wanner, II.4).

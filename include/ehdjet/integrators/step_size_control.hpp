@@ -1,5 +1,7 @@
 #pragma once
 
+#include "ehdjet/core/checkpoint.hpp"
+
 namespace ehdjet {
 
 /// Proposes step sizes from error estimates: a PI controller.
@@ -19,6 +21,9 @@ public:
   double after_accepted(double h, double error);
   /// The next attempt after a step h with error > 1 or not a number.
   double after_rejected(double h, double error);
+
+  /// After an accepted step.
+  void archive(const Archive& a) { a("previous_error", previous_error_); }
 
 private:
   int order_;

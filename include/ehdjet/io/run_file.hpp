@@ -1,5 +1,6 @@
 #pragma once
 
+#include "ehdjet/core/checkpoint.hpp"
 #include "ehdjet/simulation/observer.hpp"
 
 #include <filesystem>
@@ -42,6 +43,9 @@ public:
   /// R = link_length/l along the jet; `link_length`: l_step [m].
   std::unique_ptr<Observer> resolving_power(double interval, double link_length);
 
+  /// Keeps a checkpoint instead of the last one, which stays until the new one is complete, and
+  /// flushes. All of a run have the same names.
+  void keep(const Checkpoint& checkpoint);
   /// Makes everything written so far readable by others.
   void flush();
   /// How the Coulomb force was computed, a root attribute.

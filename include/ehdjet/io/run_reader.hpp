@@ -1,5 +1,7 @@
 #pragma once
 
+#include "ehdjet/core/checkpoint.hpp"
+
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -90,6 +92,7 @@ public:
   [[nodiscard]] RefinementTable refinements() const;
   [[nodiscard]] BudgetTable budget() const;
   [[nodiscard]] ResolvingPowerTable resolving_power() const;
+  [[nodiscard]] Checkpoint checkpoint() const; ///< the last one
 
 private:
   struct Impl;

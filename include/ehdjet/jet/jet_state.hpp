@@ -1,5 +1,6 @@
 #pragma once
 
+#include "ehdjet/core/checkpoint.hpp"
 #include "ehdjet/jet/jet_columns.hpp"
 
 #include <cstddef>
@@ -51,6 +52,8 @@ struct Bead {
   Vec3 position = Vec3::Zero(), velocity = Vec3::Zero();
   double stress = 0, volume = 0, mass = 0, charge = 0;
 };
+
+void archive(const Archive& a, JetState& jet);
 
 /// Inserts a bead so that it gets index `at`; later beads (and their landing records) move up.
 void insert_bead(JetState& jet, std::size_t at, const Bead& bead);

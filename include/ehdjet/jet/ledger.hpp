@@ -1,5 +1,6 @@
 #pragma once
 
+#include "ehdjet/core/checkpoint.hpp"
 #include "ehdjet/core/compensated_sum.hpp"
 #include "ehdjet/jet/jet_state.hpp"
 
@@ -21,6 +22,8 @@ struct Ledger {
   double impact_speed = 0;     ///< of the last landed bead at its landing [m/s]
   double collector_radius = 0; ///< of the link of the last landed bead at its landing [m]
 };
+
+void archive(const Archive& a, Ledger& ledger);
 
 /// A bead that has left the chain: one element of the deposited fibre (model 5).
 struct DepositedBead {
@@ -72,5 +75,8 @@ struct RunStatistics {
   double longest_step = 0;                                        ///< [s]
   double wall_time = 0;                                           ///< [s]
 };
+
+/// Not the name of the method in use, which the integrator knows.
+void archive(const Archive& a, RunStatistics& statistics);
 
 } // namespace ehdjet

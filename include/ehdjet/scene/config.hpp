@@ -154,6 +154,7 @@ struct OutputConfig {
   RefinementRecords refinements = RefinementRecords::none;
   std::optional<double> budget;          ///< time between rows of energy and momentum [s]
   std::optional<double> resolving_power; ///< time between samples of l_step/l [s]
+  std::optional<double> checkpoints;     ///< simulated time between checkpoints [s]
   double flush = 2;                      ///< longest wall time between flushes to disk [s]
   bool operator==(const OutputConfig&) const = default;
 };

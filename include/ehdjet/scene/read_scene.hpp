@@ -35,6 +35,11 @@ Scene read_scene_text(const std::string& text, const std::string& name,
 /// each key followed by its unit and meaning as a comment.
 std::string resolved_toml(const SceneConfig& config);
 
+/// Where a scene differs from another one, given as `resolved_toml`, in more than run.end_time and
+/// [output]: the key and both its values. None if it does not.
+std::optional<std::string> difference_from(const std::string& resolved,
+                                           const SceneConfig& config);
+
 /// Reference page of every table and key: unit, allowed range, default, meaning (Markdown).
 std::string key_reference();
 

@@ -322,6 +322,11 @@ void describe(V& v, OutputConfig& c) {
   v.optional("resolving_power", c.resolving_power, positive("s", longest_time),
              "time between samples of the resolving power link_length/l along the jet",
              "none are taken");
+  v.optional(
+      "checkpoints", c.checkpoints, positive("s", longest_time),
+      "time between checkpoints, from the last of which `ehdjet run --continue` goes "
+      "on with the same bits",
+      "none are made");
   v.optional("flush", c.flush, positive("s", 3600),
              "longest wall time between flushes to disk");
 }

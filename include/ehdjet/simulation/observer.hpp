@@ -38,6 +38,8 @@ public:
   }
   /// The jet at `next_time()`, after any event at that same time.
   virtual void observe(const JetSnapshot& /*snapshot*/) {}
+  /// The run goes on from a checkpoint: times before it have been seen to.
+  virtual void skip_to(double /*time*/) {}
   /// A bead has left the chain.
   virtual void deposit(const DepositedBead& /*bead*/) {}
   /// The chain has been cut anew; only if the run records refinements.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "ehdjet/core/checkpoint.hpp"
 #include "ehdjet/core/compensated_sum.hpp"
 #include "ehdjet/dynamics/jet_dynamics.hpp"
 #include "ehdjet/events/event.hpp"
@@ -40,6 +41,7 @@ public:
   /// Events at the same instant are applied in the order in which they were added.
   void add(std::unique_ptr<Event> event);
   void add(std::unique_ptr<Observer> observer) {
+    observer->skip_to(restored_at_);
     observers_.push_back(std::move(observer));
   }
   void add(std::unique_ptr<StepObserver> observer) {
@@ -52,6 +54,16 @@ public:
   /// Called after every step; may throw to end the run.
   using StepHook = std::function<void(const Simulation&)>;
   void after_each_step(StepHook hook) { hook_ = std::move(hook); }
+
+  /// Hands over a checkpoint at the end of the first step at or after each multiple of `interval`
+  /// [s]. No step is cut for it, and none is made that a run with a later end would not make.
+  /// The integrator restarts there, so that a run that goes on from it has the same bits.
+  using CheckpointSink = std::function<void(const Checkpoint&)>;
+  void make_checkpoints(double interval, CheckpointSink sink);
+  /// Goes on from a checkpoint of the same scene. To be called after all events and before any
+  /// observer has been added.
+  /// errors : InputError if it is not from such a scene
+  void restore(const Checkpoint& checkpoint);
 
   /// Runs to `end_time` [s]; observers see times up to and including it.
   /// errors : RunError with time, bead and term when the step size collapses or a state is not
@@ -80,6 +92,9 @@ private:
   void stop_at(const DenseStep& step, double theta);
   void apply_events(std::size_t located);
   void apply(Event& event, EventContext& context);
+  void archive(const Archive& a);
+  void make_checkpoint();
+  [[nodiscard]] double next_checkpoint() const;
   [[noreturn]] void fail(double h, const char* why);
 
   JetState jet_;
@@ -101,7 +116,11 @@ private:
   double expected_event_ = std::numeric_limits<double>::infinity(); // [s]
   std::vector<double> restart_step_; // per event: a step that suits the motion after it [s]
   std::optional<std::size_t> after_event_; // the event that the next step follows
-  std::vector<double> snapshot_;           // a state inside a step
+  double checkpoint_interval_ = 0;         // [s]
+  double checkpoint_due_ = std::numeric_limits<double>::infinity(); // [s]
+  CheckpointSink checkpoint_sink_;
+  double restored_at_ = 0;       // time of the checkpoint that this run goes on from [s]
+  std::vector<double> snapshot_; // a state inside a step
   std::vector<DepositedBead> deposited_;
   std::vector<RefinementRecord> refined_;
 };

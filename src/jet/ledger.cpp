@@ -1,0 +1,25 @@
+#include "ehdjet/jet/ledger.hpp"
+
+namespace ehdjet {
+
+void archive(const Archive& a, Ledger& l) {
+  a("inserted_beads", l.inserted_beads), a("removed_beads", l.removed_beads);
+  a("inserted_mass", l.inserted_mass), a("removed_mass", l.removed_mass);
+  a("inserted_charge", l.inserted_charge), a("removed_charge", l.removed_charge);
+  a("inserted_volume", l.inserted_volume), a("removed_volume", l.removed_volume);
+  a("release_speed", l.release_speed), a("impact_speed", l.impact_speed);
+  a("collector_radius", l.collector_radius);
+}
+
+void archive(const Archive& a, RunStatistics& s) {
+  a("evaluations", s.evaluations), a("steps", s.steps), a("rejected", s.rejected);
+  a("insertions", s.insertions), a("releases", s.releases), a("landings", s.landings);
+  a("refinements", s.refinements);
+  if (s.method) a("method_since", s.method->since), a("method_changes", s.method->changes);
+  a("coulomb_error", s.coulomb_error), a("coulomb_violations", s.coulomb_violations);
+  a("coincident_pairs", s.coincident_pairs);
+  a("shortest_step", s.shortest_step), a("longest_step", s.longest_step);
+  a("wall_time", s.wall_time);
+}
+
+} // namespace ehdjet
