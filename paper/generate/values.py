@@ -494,14 +494,14 @@ for _key, _column in (("tip", "tip_error"), ("path", "path_length_error"), ("dep
 def register_scaling(solver: str) -> None:
     """Cost and memory of the largest run with a solver, and the exponent of its cost."""
     def rows(run: RunFolder) -> Table:
-        table = run["scaling"].where(solver=solver).positive("beads", "time_per_ms_s").required(solver)
+        table = run["scaling"].where(solver=solver).positive("beads", "seconds_per_evaluation_s").required(solver)
         tolerances = table.values_of("tolerance")
         table = table.where(tolerance=max(tolerances)) if tolerances else table
         return table.where(source=queries.first_present(table, "source", ("collector distance",))).sorted_by("beads")
 
     @value(f"scaling/{solver}/exponent")
     def _(run):
-        return tex.number(queries.exponent(rows(run)["beads"], rows(run)["time_per_ms_s"]), 3)
+        return tex.number(queries.exponent(rows(run)["beads"], rows(run)["seconds_per_evaluation_s"]), 3)
 
     @value(f"scaling/{solver}/beads")
     def _(run):
@@ -509,7 +509,7 @@ def register_scaling(solver: str) -> None:
 
     @value(f"scaling/{solver}/time")
     def _(run):
-        return tex.quantity(rows(run)["time_per_ms_s"][-1], r"\second")
+        return tex.quantity(rows(run)["seconds_per_evaluation_s"][-1], r"\second")
 
     @value(f"scaling/{solver}/memory")
     def _(run):
