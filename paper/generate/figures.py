@@ -283,13 +283,6 @@ def integrators(run: RunFolder):
     return with_legend_below(panel_row(run, panels, style.PAGE_WIDTH, 3.3), 3)
 
 
-def stiff(run: RunFolder):
-    """Work and precision on stiff fluids."""
-    panels = [functools.partial(work_precision, scene, title) for scene, title in (
-        ("stiff_viscous", "stiff, viscous"), ("stiff_thin", "stiff, thin"), ("solid", "nearly solid"))]
-    return with_legend_below(panel_row(run, panels, style.PAGE_WIDTH, 2.5), 4)
-
-
 def stability_map(method: str, column: str, scale, axes, run: RunFolder) -> None:
     """A column of one method over modulus and viscosity; crosses: refused; grey: nothing reached."""
     table = queries.base_case(run["stability"]).where(method=method)
@@ -535,7 +528,6 @@ FIGURES = {
     "coulomb": coulomb,
     "trajectory": trajectory,
     "integrators": integrators,
-    "stiff": stiff,
     "stability": stability,
     "refinement": refinement,
     "snapshots": snapshots,

@@ -321,26 +321,6 @@ def _(run):
     return tex.number(np.median([a / b for a, b in pairs]), 3)
 
 
-def register_stiff(scene: str) -> None:
-    """How many times fewer evaluations the implicit method takes on a stiff scene, at like rtol."""
-    @value(f"stiff/{scene}/gain")
-    def _(run):
-        table = run["integrators"].where(scene=scene, control="rtol")
-        gains = [b / a for value in table.values_of("value")
-                 for a in table.where(value=value, method="ros34pw2")["evaluations"]
-                 for b in table.where(value=value, method="dormand-prince")["evaluations"]]
-        return tex.number(largest(np.array(gains)))
-
-    @value(f"stiff/{scene}/least-error")
-    def _(run):
-        rows = run["integrators"].where(scene=scene, method="ros34pw2").positive("position_error_m").required(scene)
-        return tex.quantity(rows["position_error_m"].min(), r"\metre")
-
-
-for _scene in ("stiff_viscous", "stiff_thin", "solid"):
-    register_stiff(_scene)
-
-
 @value("stability/theory")
 def _(run):
     """How far measured limits of explicit methods are from theory, median of the ratio less one."""
