@@ -78,7 +78,7 @@ void convergence(Suite& suite) {
       worst = std::max(worst,
                        relative(ends[i].path_length, ends[i - lengths.size()].path_length));
   }
-  suite.check_at_most("change of path length at 9 ms by half the interval, down to 0.2 cm",
+  suite.check_at_most("change of path length at 9 ms by half the interval down to 0.2 cm",
                       worst, 0.02);
 }
 
