@@ -1,7 +1,5 @@
 #include "ehdjet/core/error.hpp"
 
-#include <gsl/gsl_errno.h>
-
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
@@ -22,7 +20,6 @@
 int main(int argc, char** argv) {
   CLI::App app{"ehdjet: electrically charged jets as chains of beads", "ehdjet"};
   try {
-    gsl_set_error_handler_off(); // its return codes are checked instead
     app.require_subcommand(1);
     app.set_version_flag("--version", ehdjet::cli::version_text);
     ehdjet::cli::add_run_command(app);

@@ -1,5 +1,6 @@
 #include "run.hpp"
 
+#include "ehdjet/budget/budget.hpp"
 #include "ehdjet/core/error.hpp"
 #include "ehdjet/io/run_file.hpp"
 #include "ehdjet/io/run_reader.hpp"
@@ -56,7 +57,7 @@ void add_observers(Simulation& simulation, RunFile& file, const Scene& scene) {
     simulation.add(
         file.resolving_power(*config.output.resolving_power, config.nozzle->link_length));
   if (config.output.budget) {
-    auto budget = build_budget(scene);
+    auto budget = std::make_unique<Budget>(simulation.dynamics(), simulation.events());
     simulation.add(file.budget(*config.output.budget, *budget));
     simulation.add(std::move(budget));
   }
@@ -65,8 +66,8 @@ void add_observers(Simulation& simulation, RunFile& file, const Scene& scene) {
 /// What the solver has done, unless it is the direct sum, of which there is nothing to tell.
 std::string coulomb_method(const Simulation& s) {
   for (const auto& term : s.dynamics().terms())
-    if (std::string method = term->method(); !method.empty() && method != "direct")
-      return method;
+    if (const auto report = term->report(); report && report->method != "direct")
+      return report->method;
   return {};
 }
 

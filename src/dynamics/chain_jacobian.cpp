@@ -27,11 +27,10 @@ void ChainJacobian::factorize(double eta, std::span<const double> mass) {
     damping_[k] = 1 / (1 + eta * l.relaxation[k]);
     response_[k] = (eta * damping_[k]) * (l.stretching[k] + eta * l.turning[k]);
   }
-  const auto at_upper_end = [&](std::size_t k) -> Mat3 {
-    return eta * (eta * l.pull_upper[k] + l.tension[k] * response_[k].transpose());
-  };
-  const auto at_lower_end = [&](std::size_t k) -> Mat3 {
-    return eta * (eta * l.pull_lower[k] + l.tension[k] * response_[k].transpose());
+  const auto at_end = [&](const std::vector<Mat3>& pull, std::size_t k) -> Mat3 {
+    Mat3 answer = eta * pull[k] + l.tension[k] * response_[k].transpose();
+    if (!l.damping.empty()) answer += l.damping[k];
+    return eta * answer;
   };
   // What bead k and everything above it weighs upon link k + 1. Written as a product: the
   // difference of two stiffnesses would lose the masses that it is about.
@@ -40,18 +39,19 @@ void ChainJacobian::factorize(double eta, std::span<const double> mass) {
     lower_[k].setZero();
     const bool held = held_[k] != 0;
     if (k >= first_ && !held) {
-      lower_[k] = at_lower_end(k);
+      lower_[k] = at_end(l.pull_lower, k);
       weight = lower_[k] * pivot_[k - 1].solve(weight);
     } else {
       weight.setZero();
     }
     weight.diagonal().array() += mass[k];
+    if (!l.drag.empty() && !held) weight += eta * l.drag[k];
     if (held || k + 1 == n) {
       pivot_[k].compute(weight);
       eliminated_[k].setZero();
       continue;
     }
-    const Mat3 link = at_upper_end(k + 1);
+    const Mat3 link = at_end(l.pull_upper, k + 1);
     pivot_[k].compute(weight + link);
     eliminated_[k] = pivot_[k].solve(link);
   }
@@ -113,6 +113,21 @@ ChainJacobian::squared_rates(std::span<const double> inverse_mass) const {
     rates.tension = std::max(rates.tension, 2 * inverse_mass[k] * pull);
   }
   return rates;
+}
+
+double ChainJacobian::damping_rate(std::span<const double> inverse_mass) const {
+  const LinkDerivatives& l = links_;
+  double fastest = 0;
+  for (std::size_t k = 0; k < held_.size(); ++k) {
+    if (held_[k] != 0) continue;
+    double rate = l.drag.empty() ? 0 : l.drag[k].norm();
+    if (!l.damping.empty()) {
+      rate += 2 * l.damping[k].norm();
+      if (k + 1 < held_.size()) rate += 2 * l.damping[k + 1].norm();
+    }
+    fastest = std::max(fastest, inverse_mass[k] * rate);
+  }
+  return fastest;
 }
 
 } // namespace ehdjet

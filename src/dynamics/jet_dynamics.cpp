@@ -14,127 +14,79 @@ void JetDynamics::set_rheology(std::unique_ptr<Rheology> rheology) {
   terms_.push_back(std::move(rheology));
 }
 
+void JetDynamics::set_inflow(std::shared_ptr<const Inflow> inflow) {
+  inflow_ = std::move(inflow);
+  chain_.constrain({.inflow = inflow_.get(), .ends = constraints().ends});
+}
+
+void JetDynamics::hold(HeldEnds ends) {
+  chain_.constrain({.inflow = inflow_.get(), .ends = ends});
+}
+
 void JetDynamics::bind(const JetState& jet) {
-  mass_ = jet.mass, volume_ = jet.volume, charge_ = jet.charge, landed_ = jet.landed;
-  has_embryo_ = jet.has_embryo, absorbing_plane_ = jet.absorbing_plane;
-  if (has_embryo_) embryo_charge_ = jet.charge[1];
-  inverse_mass_.resize(mass_.size());
-  std::ranges::transform(mass_, inverse_mass_.begin(), [](double m) { return 1 / m; });
-
-  held_.clear();
-  if (nozzle_ || ends_.first) held_.push_back(0);
-  if (has_embryo_) held_.push_back(1);
-  for (const LandedBead& b : landed_) held_.push_back(b.bead);
-  frozen_ = held_;
-  if (ends_.last) held_.push_back(jet.links()); // its link goes on like any other
-
-  stage_.mass = mass_, stage_.charge = charge_, stage_.volume = volume_;
-  stage_.first = jet.first(), stage_.landed = landed_;
+  chain_.bind(jet, jet.absorbing_plane);
 }
 
 void JetDynamics::prescribe(double t, std::span<double> y) const {
-  if (!nozzle_) return;
-  const JetColumns<double> jet{y, mass_.size()};
-  const Vec3 nozzle = nozzle_->nozzle.position(t);
-  jet.position().set(0, nozzle);
-  jet.velocity().set(0, nozzle_->nozzle.velocity(t));
-  if (has_embryo_)
-    jet.position().set(1, nozzle_->embryo.position(nozzle, jet.position()[2]));
+  if (inflow_) inflow_->prescribe(t, chain_.has_led_bead(), {y, chain_.beads()});
 }
 
-// Flying on with the velocity of their crossing is right to second order in the time since then,
-// which is less than a step. All beads but the last one of those that have passed have left
-// the chain: they act on nobody.
-void JetDynamics::absorb(std::span<double> y) {
-  passed_.clear();
-  if (!absorbing_plane_) return;
-  const JetColumns<double> jet{y, mass_.size()};
-  const auto r = jet.position();
-  const auto v = jet.velocity();
-  const std::size_t first = stage_.first;
-  auto landed = landed_.rbegin();
-  bool any = false;
-  for (std::size_t k = mass_.size(); k-- > first;) {
-    const bool rests = landed != landed_.rend() && landed->bead == k;
-    if (rests) ++landed;
-    if (!rests && !(r.x[k] > *absorbing_plane_)) break;
-    passed_.push_back({k, r[k], charge_[k]});
-    if (rests) continue;
-    any = true;
-    const double late = v.x[k] > 0 ? (r.x[k] - *absorbing_plane_) / v.x[k] : 0.0;
-    r.set(k, r[k] - late * v[k]);
-  }
-  if (!any) passed_.clear();
-}
-
-void JetDynamics::let_pass(std::span<double> y) {
-  const auto r = JetColumns<double>{y, mass_.size()}.position();
-  for (const Passed& p : passed_) r.set(p.bead, p.position), charge_[p.bead] = p.charge;
-}
-
-void JetDynamics::set_stage(double t, std::span<double> y) {
-  prescribe(t, y);
-  const JetColumns<double> jet{y, mass_.size()};
-  stage_.time = t, stage_.columns = jet;
-  stage_.invalidate();
-  if (has_embryo_) {
-    const double distance = (jet.position()[2] - jet.position()[0]).norm();
-    charge_[1] = embryo_charge_ * nozzle_->embryo.charge_fraction(distance);
-  }
-}
-
-void JetDynamics::evaluate(double t, std::span<double> y, std::span<double> rate) {
-  EHDJET_EXPECTS(y.size() == rate.size() && !mass_.empty());
+void JetDynamics::evaluate(double t, std::span<const double> y, std::span<double> rate,
+                           BeadRange targets, BeadRange sources) {
+  EHDJET_EXPECTS(y.size() == rate.size() && chain_.beads() > 0);
   ++evaluations_;
-  absorb(y);
-  for (std::size_t i = 0; i + 1 < passed_.size(); ++i) charge_[passed_[i].bead] = 0;
-  set_stage(t, y);
-  const std::size_t n = mass_.size();
+  const Stage& stage = chain_.at(t, y, targets, sources);
+  const auto [begin, end] = stage.targets;
+  const std::size_t n = chain_.beads();
   const JetColumns<double> rates{rate, n};
-
   const Vec3View force = rates.velocity(); // summed in place, then divided by the mass
-  const std::span<double> forces = rate.subspan(3 * n, 3 * n);
-  std::ranges::fill(forces, 0.0);
-  for (const auto& term : terms_) term->add_force(stage_, force);
-  if (rheology_) rheology_->stress_rate(stage_, rates.stress());
-  let_pass(y);
+  for (double* f : {force.x.data(), force.y.data(), force.z.data()})
+    std::fill(f + begin, f + end, 0.0);
+  for (const auto& term : terms_) term->add_force(stage, force);
+  if (rheology_ != nullptr) rheology_->stress_rate(stage, rates.stress());
 
-  std::ranges::copy(y.subspan(3 * n, 3 * n), rate.begin()); // dr/dt = v
-  const double* w = inverse_mass_.data();
+  for (std::size_t c = 0; c < 3; ++c) { // dr/dt = v
+    const double* velocity = y.data() + (c + 3) * n;
+    std::copy(velocity + begin, velocity + end, rate.data() + c * n + begin);
+  }
+  const double* w = chain_.inverse_mass().data();
   for (double* f : {force.x.data(), force.y.data(), force.z.data()}) {
 #pragma omp simd
-    for (std::size_t k = 0; k < n; ++k) f[k] *= w[k];
+    for (std::size_t k = begin; k < end; ++k) f[k] *= w[k];
   }
-  // How beads that have passed fly on is nobody's business any more: like the one before them, so
-  // that the charges that vanish make no jump, which would only shorten the step.
-  if (!passed_.empty() && passed_.back().bead > stage_.first)
-    for (const Passed& p : passed_) force.set(p.bead, force[passed_.back().bead - 1]);
-  for (const std::size_t k : held_)
+  // How beads that have passed fly on does not matter any more: they do so like the one before
+  // them, because a jump of their own acceleration would only shorten the step.
+  const auto absorbed = chain_.absorbed();
+  if (!absorbed.empty() && absorbed.back() > stage.first)
+    for (const std::size_t k : absorbed) force.set(k, force[absorbed.back() - 1]);
+  for (const std::size_t k : chain_.held())
     for (std::size_t c = 0; c < rates.kinematic_columns; ++c) rate[c * n + k] = 0;
-  if (rheology_)
-    for (const std::size_t k : frozen_) rates.stress()[k] = 0;
+  if (rheology_ != nullptr)
+    for (const std::size_t k : chain_.frozen()) rates.stress()[k] = 0;
 }
 
 void JetDynamics::linearize(double t, std::span<const double> y) {
-  stage_.time = t, stage_.columns = {y, mass_.size()};
-  stage_.invalidate();
+  const Stage& stage = chain_.at(t, y);
   linearized_at_ = t;
-  jacobian_.reset(mass_.size(), stage_.first);
-  for (const auto& term : terms_) term->add_derivatives(stage_, jacobian_.links());
-  for (const std::size_t k : held_) jacobian_.hold(k);
-  for (const std::size_t k : frozen_) jacobian_.freeze(k);
+  jacobian_.reset(chain_.beads(), stage.first);
+  for (const auto& term : terms_) term->add_derivatives(stage, jacobian_.links());
+  for (const std::size_t k : chain_.held()) jacobian_.hold(k);
+  for (const std::size_t k : chain_.frozen()) jacobian_.freeze(k);
 }
 
 // The nozzle is the only bead that moves in a prescribed way and pulls at another one.
 void JetDynamics::add_time_derivative(double factor, std::span<double> out) const {
-  const std::size_t k = stage_.first;
-  if (!nozzle_ || jacobian_.is_held(k)) return;
-  Vec3 velocity = nozzle_->nozzle.velocity(linearized_at_);
+  const std::size_t k = chain_.stage().first;
+  if (!inflow_ || jacobian_.is_held(k)) return;
+  Vec3 velocity = inflow_->nozzle().velocity(linearized_at_);
   velocity.x() = 0; // the fluid flows through it, it stays
-  const Vec3 acceleration = nozzle_->nozzle.acceleration(linearized_at_);
+  const Vec3 acceleration = inflow_->nozzle().acceleration(linearized_at_);
   const LinkDerivatives& links = jacobian_.links();
-  const JetColumns<double> rates{out, mass_.size()};
-  rates.velocity().add(k, factor * inverse_mass_[k] * (links.pull_lower[k] * velocity));
+  const JetColumns<double> rates{out, chain_.beads()};
+  const double scale = factor * chain_.inverse_mass()[k];
+  rates.velocity().add(k, scale * (links.pull_lower[k] * velocity));
+  if (!links.damping.empty())
+    rates.velocity().add(k, scale * (links.damping[k] * acceleration));
   if (rates.has_stress())
     rates.stress()[k] -=
         factor * (links.stretching[k].dot(acceleration) + links.turning[k].dot(velocity));
@@ -143,8 +95,8 @@ void JetDynamics::add_time_derivative(double factor, std::span<double> out) cons
 // Neighbours in opposite phase: s^2 + s/tau + omega^2 = 0 with elasticity, s^2 + omega^2 = 0
 // without.
 StiffPart::Modes JetDynamics::fastest_modes() const {
-  const auto [elastic, tension] = jacobian_.squared_rates(inverse_mass_);
-  double relaxation = 0;
+  const auto [elastic, tension] = jacobian_.squared_rates(chain_.inverse_mass());
+  double relaxation = jacobian_.damping_rate(chain_.inverse_mass());
   for (const double r : jacobian_.links().relaxation) relaxation = std::max(relaxation, r);
   Modes modes{-relaxation, 0, std::complex<double>(0, std::sqrt(tension))};
   if (const double decay = relaxation / 2, omega = std::sqrt(elastic); omega > decay)
@@ -159,18 +111,19 @@ void JetDynamics::archive(const Archive& a) {
 
 std::uint64_t JetDynamics::coincident_pairs() const {
   std::uint64_t pairs = 0;
-  for (const auto& term : terms_) pairs += term->coincident_pairs();
+  for (const auto& term : terms_)
+    if (const auto report = term->report()) pairs += report->coincident_pairs;
   return pairs;
 }
 
-std::optional<CoulombChecks> JetDynamics::coulomb_checks() const {
+std::optional<TermReport::Checks> JetDynamics::checks() const {
   for (const auto& term : terms_)
-    if (const auto checks = term->checks()) return checks;
+    if (const auto report = term->report(); report && report->checks) return report->checks;
   return std::nullopt;
 }
 
 std::string JetDynamics::diagnosis(double t, std::span<const double> y, std::size_t bead) {
-  const std::size_t n = mass_.size();
+  const std::size_t n = chain_.beads();
   for (std::size_t i = 0; i < y.size(); ++i)
     if (!std::isfinite(y[i]))
       return fmt::format("bead {}: its state is not a number", i % n);
@@ -179,26 +132,27 @@ std::string JetDynamics::diagnosis(double t, std::span<const double> y, std::siz
   const std::span<double> b(buffer);
   const Vec3View force{b.subspan(0, n), b.subspan(n, n), b.subspan(2 * n, n)};
   const auto moves = [&](std::size_t k) {
-    return std::ranges::find(held_, k) == held_.end();
+    return std::ranges::find(chain_.held(), k) == chain_.held().end();
   };
-  set_stage(t, state);
+  prescribe(t, state);
+  const Stage& stage = chain_.at(t, state);
   std::string strongest = "no force";
   double largest = 0;
   for (const auto& term : terms_) {
     std::ranges::fill(buffer, 0.0);
-    term->add_force(stage_, force);
+    term->add_force(stage, force);
     for (std::size_t k = 0; k < n; ++k)
       if (moves(k) && !force[k].allFinite())
         return fmt::format("bead {}: the force of {} is not a number", k, term->name());
     if (force[bead].norm() > largest) {
       largest = force[bead].norm();
       strongest = fmt::format("the strongest force there is {} ({:.3g} N, {:.3g} m/s^2)",
-                              term->name(), largest, largest * inverse_mass_[bead]);
+                              term->name(), largest, largest * chain_.inverse_mass()[bead]);
     }
   }
-  if (rheology_) {
+  if (rheology_ != nullptr) {
     const std::span<double> rate = b.subspan(0, n);
-    rheology_->stress_rate(stage_, rate);
+    rheology_->stress_rate(stage, rate);
     for (std::size_t k = 0; k < n; ++k)
       if (moves(k) && !std::isfinite(rate[k]))
         return fmt::format("bead {}: the stress rate of {} is not a number", k,

@@ -2,8 +2,6 @@
 
 #include "ehdjet/events/root.hpp"
 
-#include <numbers>
-
 namespace ehdjet {
 namespace {
 
@@ -23,20 +21,82 @@ double recession(const DenseStep& step, const Nozzle& nozzle, std::size_t bead) 
 
 } // namespace
 
-NewBead NewBead::from(double radius, double link_length, double density,
-                      double charge_density) {
-  const double volume = std::numbers::pi * radius * radius * link_length;
-  return {.volume = volume, .mass = density * volume, .charge = charge_density * volume};
+JetState EmbryoInflow::start(std::size_t integrated_columns) const {
+  const LinkContent& born = rule_.born;
+  JetState jet;
+  jet.y.assign(integrated_columns, 0.0);
+  jet.mass = {born.mass}, jet.charge = {born.charge}, jet.volume = {born.volume};
+  insert_bead(jet, 1,
+              {.position = {rule_.link_length, 0, 0},
+               .velocity = {nozzle().fluid_velocity, 0, 0},
+               .stress = 0,
+               .volume = born.volume,
+               .mass = born.mass,
+               .charge = born.charge});
+  return jet;
+}
+
+void EmbryoInflow::prescribe(double t, bool has_led_bead, JetColumns<double> y) const {
+  const Vec3 place = nozzle().position(t);
+  y.position().set(0, place);
+  y.velocity().set(0, nozzle().velocity(t));
+  if (has_led_bead) y.position().set(1, embryo_.position(place, y.position()[2]));
+}
+
+LinkContent EmbryoInflow::acting(const LinkContent& full, double /*t*/,
+                                 ConstVec3View r) const {
+  LinkContent now = full;
+  now.charge *= embryo_.charge_fraction((r[2] - r[0]).norm());
+  return now;
+}
+
+double EmbryoInflow::charging(const LinkContent& full, JetColumns<const double> y) const {
+  const auto r = y.position(), v = y.velocity();
+  Vec3 nozzle_velocity = v[0];
+  nozzle_velocity.x() = 0;
+  const Vec3 segment = r[2] - r[0];
+  const double d = segment.norm(), rate = segment.dot(v[2] - nozzle_velocity) / d;
+  return full.charge * embryo_.charge_fraction_slope(d) * rate;
+}
+
+// At l u from the nozzle, u the direction from there to bead 2.
+Vec3 EmbryoInflow::led_velocity(JetColumns<const double> y) const {
+  const auto r = y.position(), v = y.velocity();
+  Vec3 nozzle_velocity = v[0];
+  nozzle_velocity.x() = 0;
+  const Vec3 segment = r[2] - r[0], u = segment.normalized();
+  const Vec3 rate = v[2] - nozzle_velocity;
+  return nozzle_velocity + rule_.link_length / segment.norm() * (rate - rate.dot(u) * u);
+}
+
+std::vector<std::unique_ptr<Event>> EmbryoInflow::events() const {
+  std::vector<std::unique_ptr<Event>> events;
+  events.push_back(std::make_unique<Release>(*this));
+  events.push_back(std::make_unique<Insertion>(*this));
+  return events;
+}
+
+Channel Insertion::channel() const {
+  return {.name = "insertion",
+          .energy = "insertion_energy",
+          .energy_meaning = "brought in so far by embryos: charging, leading, release",
+          .momentum = "insertion_momentum",
+          .momentum_meaning =
+              "brought in so far by embryos: their push, and at their release"};
+}
+
+Channel Release::channel() const {
+  return Insertion(inflow_).channel();
 }
 
 bool Insertion::due(const JetState& jet) const {
   return !jet.has_embryo && !jet.is_landed(1)
-         && distance_to_nozzle(jet, 1) >= embryo_.creation_distance();
+         && distance_to_nozzle(jet, 1) >= inflow_.embryo().creation_distance();
 }
 
 double Insertion::excess(const DenseStep& step, double theta) const {
-  const Vec3 nozzle = nozzle_.position(step.time(theta));
-  return (step.position(theta, 1) - nozzle).norm() - embryo_.creation_distance();
+  const Vec3 nozzle = inflow_.nozzle().position(step.time(theta));
+  return (step.position(theta, 1) - nozzle).norm() - inflow_.embryo().creation_distance();
 }
 
 std::optional<double> Insertion::locate(const DenseStep& step) {
@@ -46,23 +106,25 @@ std::optional<double> Insertion::locate(const DenseStep& step) {
 
 std::optional<double> Insertion::predict(const DenseStep& step) const {
   if (step.jet.has_embryo || step.jet.is_landed(1)) return std::nullopt;
-  return expected_crossing(excess(step, 0), excess(step, 1), recession(step, nozzle_, 1));
+  return expected_crossing(excess(step, 0), excess(step, 1),
+                           recession(step, inflow_.nozzle(), 1));
 }
 
 void Insertion::apply(EventContext& context) {
   JetState& jet = context.jet;
   Ledger& ledger = context.ledger;
-  NewBead born = born_;
+  const EmbryoInflow::Rule& rule = inflow_.rule();
+  LinkContent born = rule.born;
   ++ledger.inserted_beads;
-  if (varicosity_ && ledger.inserted_beads % varicosity_->every == 0) {
-    born.volume *= varicosity_->volume;
-    born.mass *= varicosity_->mass;
-    born.charge *= varicosity_->charge;
+  if (rule.varicosity && ledger.inserted_beads % rule.varicosity->every == 0) {
+    born.volume *= rule.varicosity->volume;
+    born.mass *= rule.varicosity->mass;
+    born.charge *= rule.varicosity->charge;
   }
   const auto r = jet.columns().position();
   insert_bead(jet, 1,
-              {.position = embryo_.position(r[0], r[1]),
-               .velocity = {nozzle_.fluid_velocity, 0, 0},
+              {.position = inflow_.embryo().position(r[0], r[1]),
+               .velocity = {inflow_.nozzle().fluid_velocity, 0, 0},
                .stress = 0,
                .volume = born.volume,
                .mass = born.mass,
@@ -75,12 +137,13 @@ void Insertion::apply(EventContext& context) {
 }
 
 bool Release::due(const JetState& jet) const {
-  return jet.has_embryo && distance_to_nozzle(jet, 2) >= embryo_.release_distance();
+  return jet.has_embryo
+         && distance_to_nozzle(jet, 2) >= inflow_.embryo().release_distance();
 }
 
 double Release::excess(const DenseStep& step, double theta) const {
-  const Vec3 nozzle = nozzle_.position(step.time(theta));
-  return (step.position(theta, 2) - nozzle).norm() - embryo_.release_distance();
+  const Vec3 nozzle = inflow_.nozzle().position(step.time(theta));
+  return (step.position(theta, 2) - nozzle).norm() - inflow_.embryo().release_distance();
 }
 
 std::optional<double> Release::locate(const DenseStep& step) {
@@ -90,15 +153,16 @@ std::optional<double> Release::locate(const DenseStep& step) {
 
 std::optional<double> Release::predict(const DenseStep& step) const {
   if (!step.jet.has_embryo) return std::nullopt;
-  return expected_crossing(excess(step, 0), excess(step, 1), recession(step, nozzle_, 2));
+  return expected_crossing(excess(step, 0), excess(step, 1),
+                           recession(step, inflow_.nozzle(), 2));
 }
 
 void Release::apply(EventContext& context) {
   JetState& jet = context.jet;
   const auto v = jet.columns().velocity();
-  const double vs = nozzle_.fluid_velocity;
+  const double vs = inflow_.nozzle().fluid_velocity;
   Vec3 velocity(vs, 0, 0);
-  if (velocity_ == ReleaseVelocity::half) velocity = (v[2] + velocity) / 2;
+  if (inflow_.rule().release == ReleaseVelocity::half) velocity = (v[2] + velocity) / 2;
   v.set(1, velocity);
   jet.has_embryo = false;
   context.ledger.release_speed = velocity.norm();

@@ -23,6 +23,17 @@ void Landing::for_each_arrival(const JetState& jet, const Reached& reached,
     if (reached(k) && !jet.is_landed(k)) found(k);
 }
 
+Channel Landing::channel() const {
+  return {.name = "landing",
+          .energy = "landing_energy",
+          .energy_meaning =
+              "brought in so far at the collector: beads stopped and removed, "
+              "links of landed beads",
+          .momentum = "landing_momentum",
+          .momentum_meaning =
+              "brought in so far by beads that land, and by the pull of those that have"};
+}
+
 bool Landing::due(const JetState& jet) const {
   const auto x = jet.columns().position().x;
   bool any = false;
@@ -127,7 +138,9 @@ Landing::Arrival Landing::arrival_inside(const DenseStep& step, std::size_t bead
           .time = step.time(theta),
           .position = position,
           .velocity = step.velocity(theta, bead),
-          .stress = step.jet.columns().has_stress() ? step.stress(theta, bead) : 0.0,
+          .stress = step.jet.columns().has_stress()
+                        ? step.value(theta, JetColumns<double>::kinematic_columns, bead)
+                        : 0.0,
           .link_length = length};
 }
 

@@ -12,31 +12,6 @@ namespace {
 
 constexpr double round_off = 1e-12; // of times
 
-JetTotals totals(const JetState& jet, const Refinement::Recording& recording) {
-  const auto c = jet.columns();
-  CompensatedSum mass, charge, volume;
-  JetTotals sum;
-  for (std::size_t k = 1; k < jet.beads(); ++k) {
-    mass += jet.mass[k], charge += jet.charge[k], volume += jet.volume[k];
-    if (c.has_stress() && recording.elastic_modulus > 0)
-      sum.elastic_energy +=
-          jet.volume[k] * c.stress()[k] * c.stress()[k] / (2 * recording.elastic_modulus);
-  }
-  auto landed = jet.landed.begin();
-  for (std::size_t k = jet.first(); k < jet.beads(); ++k) {
-    if (landed != jet.landed.end() && landed->bead == k) {
-      ++landed;
-      continue;
-    }
-    const Vec3 v = c.velocity()[k];
-    sum.momentum += jet.mass[k] * v;
-    sum.kinetic_energy += jet.mass[k] * v.squaredNorm() / 2;
-  }
-  sum.mass = mass, sum.charge = charge, sum.volume = volume;
-  if (recording.coulomb_energy) sum.coulomb_energy = recording.coulomb_energy(jet);
-  return sum;
-}
-
 /// A mesh that is refused does not know when.
 template <class Cut>
 auto at_time(double t, const Cut& cut) {
@@ -59,11 +34,11 @@ JetTotals difference(const JetTotals& after, const JetTotals& before) {
 
 } // namespace
 
-Refinement::Refinement(const RefinementRule& rule, double interval,
-                       std::optional<Recording> recording, bool at_step_ends)
+Refinement::Refinement(const RefinementRule& rule, double interval, Totals totals,
+                       bool at_step_ends)
     : rule_(rule)
     , schedule_(interval, 1)
-    , recording_(std::move(recording))
+    , totals_(std::move(totals))
     , at_step_ends_(at_step_ends) {}
 
 bool Refinement::due(const JetState& jet) const {
@@ -99,20 +74,20 @@ bool Refinement::changes(const JetState& jet) const {
 void Refinement::apply(EventContext& context) {
   JetState& jet = context.jet;
   pass(jet.time);
-  const JetTotals before = recording_ ? totals(jet, *recording_) : JetTotals{};
+  const JetTotals before = totals_ ? totals_(jet) : JetTotals{};
   const std::size_t beads_before = jet.links();
   const auto joined = rule_.coarsen ? coarsen_jet(jet, rule_) : std::nullopt;
   const auto cut = at_time(jet.time, [&] { return refine_jet(jet, rule_); });
   if (!joined && !cut) return;
   auto& count = context.statistics.refinements;
   count = count.value_or(0) + 1;
-  if (!recording_) return;
+  if (!totals_) return;
   context.refined.push_back(
       {.time = jet.time,
        .kept = std::min(joined ? joined->kept : jet.links(), cut ? cut->kept : jet.links()),
        .beads_before = beads_before,
        .beads_after = jet.links(),
-       .change = difference(totals(jet, *recording_), before),
+       .change = difference(totals_(jet), before),
        .worst_link = cut ? cut->worst_link : 0});
 }
 

@@ -5,9 +5,32 @@ namespace ehdjet {
 void ExternalField::add_force(const Stage& stage, Vec3View force) {
   const double *q = stage.charge.data(), e = strength_;
   double* fx = force.x.data();
-  const std::size_t n = force.size();
+  const BeadRange targets = stage.targets.within(stage.beads());
 #pragma omp simd
-  for (std::size_t k = 0; k < n; ++k) fx[k] += q[k] * e;
+  for (std::size_t k = targets.begin; k < targets.end; ++k) fx[k] += q[k] * e;
+}
+
+TermAccount ExternalField::account() const {
+  return {.energy = "field_energy",
+          .energy_meaning = "-sum q E x, charges as they act",
+          .channel = {.name = "field",
+                      .energy = {},
+                      .energy_meaning = {},
+                      .momentum = "field_impulse",
+                      .momentum_meaning = "so far, of the field",
+                      .axial = true}};
+}
+
+double ExternalField::energy(const Stage& stage) {
+  double energy = 0;
+  const auto x = stage.columns.position().x;
+  for (std::size_t k = 0; k < stage.beads(); ++k)
+    energy -= stage.charge[k] * strength_ * x[k];
+  return energy;
+}
+
+double ExternalField::potential(const Stage& stage, std::size_t bead) {
+  return -strength_ * stage.columns.position().x[bead];
 }
 
 } // namespace ehdjet

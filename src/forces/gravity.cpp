@@ -5,9 +5,28 @@ namespace ehdjet {
 void Gravity::add_force(const Stage& stage, Vec3View force) {
   const double *m = stage.mass.data(), g = acceleration_;
   double* fx = force.x.data();
-  const std::size_t n = force.size();
+  const BeadRange targets = stage.targets.within(stage.beads());
 #pragma omp simd
-  for (std::size_t k = 0; k < n; ++k) fx[k] += m[k] * g;
+  for (std::size_t k = targets.begin; k < targets.end; ++k) fx[k] += m[k] * g;
+}
+
+TermAccount Gravity::account() const {
+  return {.energy = "gravity_energy",
+          .energy_meaning = "-sum m g x",
+          .channel = {.name = "gravity",
+                      .energy = {},
+                      .energy_meaning = {},
+                      .momentum = "gravity_impulse",
+                      .momentum_meaning = "so far, of gravity",
+                      .axial = true}};
+}
+
+double Gravity::energy(const Stage& stage) {
+  double energy = 0;
+  const auto x = stage.columns.position().x;
+  for (std::size_t k = 0; k < stage.beads(); ++k)
+    energy -= stage.mass[k] * acceleration_ * x[k];
+  return energy;
 }
 
 } // namespace ehdjet

@@ -16,12 +16,11 @@ void Maxwell::add_force(const Stage& stage, Vec3View force) {
   const Links& links = stage.links();
   const double *l = links.length.data(), *v = stage.volume.data(),
                *sigma = stage.columns.stress().data();
-  tension_per_length_.assign(links.length.size(), 0.0);
-  double* t = tension_per_length_.data();
+  double* t = per_link(links, tension_per_length_);
 #pragma omp simd
   for (std::size_t k = links.first; k <= links.last; ++k)
     t[k] = v[k] * sigma[k] / (l[k] * l[k]);
-  add_link_tension(links, tension_per_length_, force);
+  add_link_tension(links, tension_per_length_, stage.targets, force);
 }
 
 void Maxwell::stress_rate(const Stage& stage, std::span<double> rate) {
@@ -38,15 +37,16 @@ void Maxwell::stress_rate(const Stage& stage, std::span<double> rate) {
                               + (vz[k] - vz[upstream]) * dz[k];
     out[k] = g * stretching / (l[k] * l[k]) - relaxation * sigma[k];
   };
-  for (std::size_t k = 0; k < links.first; ++k) out[k] = 0;
-  link(links.first, 0);
+  for (std::size_t k = stage.targets.begin; k < links.head; ++k) out[k] = 0;
+  std::size_t begin = links.beads.begin;
+  if (begin == links.head && begin < links.beads.end) link(begin++, 0);
 #pragma omp simd
-  for (std::size_t k = links.first + 1; k <= links.last; ++k) link(k, k - 1);
+  for (std::size_t k = begin; k < links.beads.end; ++k) link(k, k - 1);
 
   // A landed bead keeps the velocity of its impact as a record, but it is at rest.
   for (const LandedBead& b : stage.landed) {
     const std::size_t k = b.bead + 1;
-    if (k > links.last) continue;
+    if (k < links.beads.begin || k >= links.beads.end) continue;
     const double impact = vx[b.bead] * dx[k] + vy[b.bead] * dy[k] + vz[b.bead] * dz[k];
     out[k] += g * impact / (l[k] * l[k]);
   }
@@ -61,11 +61,11 @@ void Maxwell::add_derivatives(const Stage& stage, LinkDerivatives& out) {
   const auto sigma = stage.columns.stress();
   auto landed = stage.landed.begin();
   for (std::size_t k = links.first; k <= links.last; ++k) {
-    const std::size_t upstream = k == links.first ? 0 : k - 1;
+    const std::size_t upstream = links.upstream(k);
     while (landed != stage.landed.end() && landed->bead < upstream) ++landed;
     const bool rests = landed != stage.landed.end() && landed->bead == upstream;
     const double l = links.length[k], stiffness = elastic_modulus_ / (l * l);
-    const Vec3 d(links.dx[k], links.dy[k], links.dz[k]), t = d / l;
+    const Vec3 d = links.vector(k), t = d / l;
     const Vec3 w = rests ? v[k] : Vec3(v[k] - v[upstream]);
     const double area_per_length = stage.volume[k] / (l * l);
     out.add_pull(k,
@@ -74,6 +74,50 @@ void Maxwell::add_derivatives(const Stage& stage, LinkDerivatives& out) {
     out.stretching[k] += stiffness * d;
     out.turning[k] += stiffness * (w - 2 * w.dot(t) * t);
     out.relaxation[k] += relaxation_rate_;
+  }
+}
+
+TermAccount Maxwell::account() const {
+  return {
+      .energy = "elastic_energy",
+      .energy_meaning = "sum V sigma^2/(2 G)",
+      .channel = {.name = "dissipation",
+                  .energy = "dissipated_energy",
+                  .energy_meaning = "lost so far to viscosity, sum V sigma^2/mu over time",
+                  .momentum = {},
+                  .momentum_meaning = {},
+                  .loss = true}};
+}
+
+double Maxwell::energy(const Stage& stage) {
+  const Links& links = stage.links();
+  const auto sigma = stage.columns.stress();
+  double energy = 0;
+  for (std::size_t k = links.first; k <= links.last; ++k)
+    energy += stage.volume[k] * sigma[k] * sigma[k] / (2 * elastic_modulus_);
+  return energy;
+}
+
+// d/dt V sigma^2/(2 G) = T t.(v_k - v_(k-1)) - V sigma^2/mu, with the velocity of the fluid, v_s
+// included, at the nozzle. The link of a bead that has landed keeps its stress, and so its energy.
+void Maxwell::add_power(const Stage& stage, Exchange& exchange) {
+  const Links& links = stage.links();
+  const auto v = stage.columns.velocity();
+  const auto sigma = stage.columns.stress();
+  for (std::size_t k = links.first; k <= links.last; ++k) {
+    const std::size_t up = links.upstream(k);
+    const double volume = stage.volume[k], l = links.length[k];
+    const Vec3 pull = volume * sigma[k] / (l * l) * links.vector(k); // T t
+    const bool up_moves = exchange.support(up) == Support::none;
+    if (exchange.support(k) == Support::collector) {
+      exchange.by_support_of(k).energy +=
+          pull.dot(up_moves ? Vec3(v[up]) : exchange.led(up));
+      continue;
+    }
+    exchange.own.energy -=
+        volume * sigma[k] * sigma[k] * relaxation_rate_ / elastic_modulus_;
+    if (!up_moves && exchange.support(up) != Support::collector)
+      exchange.by_support_of(up).energy -= pull.dot(v[up] - exchange.led(up));
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include "ehdjet/jet/curvature.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <numbers>
@@ -21,13 +22,26 @@ void BendingSurfaceTension::add_force(const Stage& stage, Vec3View force) {
     a[k] = std::sqrt(v[k] / (std::numbers::pi * l[k]));
 
   const double alpha = coefficient_;
+  const std::size_t end = std::min(links.beads.end, stage.beads() - 1);
 #pragma omp simd
-  for (std::size_t k = links.first; k < links.last; ++k) {
+  for (std::size_t k = links.beads.begin; k < end; ++k) {
     const Curvature c = curvature(-dx[k], -dy[k], -dz[k], dx[k + 1], dy[k + 1], dz[k + 1]);
     const double mean_radius = (a[k] + a[k + 1]) / 2;
     const double strength = alpha * std::numbers::pi * mean_radius * mean_radius;
     fx[k] += strength * c.x, fy[k] += strength * c.y, fz[k] += strength * c.z;
   }
+}
+
+TermAccount BendingSurfaceTension::account() const {
+  return {.energy = {},
+          .energy_meaning = {},
+          .channel = {.name = "surface",
+                      .energy = "surface_work",
+                      .energy_meaning =
+                          "work so far of the paper's surface tension, which has "
+                          "no energy",
+                      .momentum = "surface_impulse",
+                      .momentum_meaning = "so far, of the paper's surface tension"}};
 }
 
 // On a nearly straight chain K = 2/(l_k + l_(k+1)) (t_(k+1) - t_k), and dt/dd = (I - t t^T)/l.
@@ -37,7 +51,7 @@ void BendingSurfaceTension::add_derivatives(const Stage& stage, LinkDerivatives&
     return std::sqrt(stage.volume[k] / (std::numbers::pi * links.length[k]));
   };
   const auto across = [&](std::size_t k) -> Mat3 {
-    const Vec3 t = Vec3(links.dx[k], links.dy[k], links.dz[k]) / links.length[k];
+    const Vec3 t = links.vector(k) / links.length[k];
     return (Mat3::Identity() - t * t.transpose()) / links.length[k];
   };
   for (std::size_t k = links.first; k < links.last; ++k) {
@@ -52,13 +66,25 @@ void BendingSurfaceTension::add_derivatives(const Stage& stage, LinkDerivatives&
 void LineSurfaceTension::add_force(const Stage& stage, Vec3View force) {
   const Links& links = stage.links();
   const double *l = links.length.data(), *v = stage.volume.data();
-  tension_per_length_.assign(links.length.size(), 0.0);
-  double* t = tension_per_length_.data();
+  double* t = per_link(links, tension_per_length_);
   const double alpha = coefficient_;
 #pragma omp simd
   for (std::size_t k = links.first; k <= links.last; ++k) // pi a alpha / l
     t[k] = alpha * std::sqrt(std::numbers::pi * v[k] / l[k]) / l[k];
-  add_link_tension(links, tension_per_length_, force);
+  add_link_tension(links, tension_per_length_, stage.targets, force);
+}
+
+TermAccount LineSurfaceTension::account() const {
+  return {.energy = "surface_energy", .energy_meaning = "sum 2 alpha sqrt(pi V l)"};
+}
+
+double LineSurfaceTension::energy(const Stage& stage) {
+  const Links& links = stage.links();
+  double energy = 0;
+  for (std::size_t k = links.first; k <= links.last; ++k)
+    energy +=
+        2 * coefficient_ * std::sqrt(std::numbers::pi * stage.volume[k] * links.length[k]);
+  return energy;
 }
 
 // With F = alpha sqrt(pi V) d l^(-3/2): dF/dd = alpha sqrt(pi V) l^(-3/2) (I - 3/2 t t^T).
@@ -66,7 +92,7 @@ void LineSurfaceTension::add_derivatives(const Stage& stage, LinkDerivatives& ou
   const Links& links = stage.links();
   for (std::size_t k = links.first; k <= links.last; ++k) {
     const double l = links.length[k];
-    const Vec3 t = Vec3(links.dx[k], links.dy[k], links.dz[k]) / l;
+    const Vec3 t = links.vector(k) / l;
     const double pull =
         coefficient_ * std::sqrt(std::numbers::pi * stage.volume[k] / l) / l;
     out.add_pull(k, pull * (Mat3::Identity() - 1.5 * t * t.transpose()));

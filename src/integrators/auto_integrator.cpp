@@ -89,7 +89,7 @@ void AutoIntegrator::reconsider(OdeSystem& system, double t, std::span<const dou
 }
 
 StepOutcome AutoIntegrator::attempt(OdeSystem& system, double t, double h,
-                                    std::span<double> y) {
+                                    std::span<const double> y) {
   if (!chosen_) {
     choose(system, t, h, y);
   } else if (new_step_) {
@@ -124,7 +124,8 @@ void AutoIntegrator::archive(const Archive& a) {
   a("patience", patience_), a("steps", steps_), a("left_implicit", left_implicit_);
 }
 
-double AutoIntegrator::initial_step(OdeSystem& system, double t, std::span<double> y) {
+double AutoIntegrator::initial_step(OdeSystem& system, double t,
+                                    std::span<const double> y) {
   return active_->initial_step(system, t, y);
 }
 

@@ -53,7 +53,7 @@ void RosenbrockW::resize(std::size_t n) {
   restart();
 }
 
-void RosenbrockW::prepare_start(OdeSystem& system, double t, std::span<double> y) {
+void RosenbrockW::prepare_start(OdeSystem& system, double t, std::span<const double> y) {
   if (start_known_) return;
   system.evaluate(t, y, start_rate_);
   system.stiff_part()->linearize(t, y);
@@ -63,7 +63,7 @@ void RosenbrockW::prepare_start(OdeSystem& system, double t, std::span<double> y
 // Solved for w = k_i + sum_j (g_ij/gamma) k_j, which needs no product with J:
 //     (I - h gamma J) w = f_i + sum_j (g_ij/gamma) k_j + h gamma_i df/dt
 StepOutcome RosenbrockW::attempt(OdeSystem& system, double t, double h,
-                                 std::span<double> y) {
+                                 std::span<const double> y) {
   resize(y.size());
   y0_ = y, h_ = h;
   const std::size_t n = y.size();
@@ -81,6 +81,7 @@ StepOutcome RosenbrockW::attempt(OdeSystem& system, double t, double h,
     const double* f = start_rate_.data();
     if (place.count > 0) {
       combine(y.data(), place, stage_.data(), n);
+      system.prescribe(t + alpha_[i] * h, stage_);
       system.evaluate(t + alpha_[i] * h, stage_, k_[i]);
       f = k_[i].data();
     }
@@ -120,7 +121,7 @@ void RosenbrockW::commit(std::vector<double>& y) {
   start_known_ = false;
 }
 
-double RosenbrockW::initial_step(OdeSystem& system, double t, std::span<double> y) {
+double RosenbrockW::initial_step(OdeSystem& system, double t, std::span<const double> y) {
   resize(y.size());
   prepare_start(system, t, y);
   const double rate =

@@ -32,17 +32,19 @@ void RungeKutta::evaluate_stage(OdeSystem& system, std::size_t k, double c,
   WeightedVectors sum;
   for (std::size_t j = 0; j < a.size(); ++j) sum.add(k_[j].data(), h_ * a[j]);
   combine(y0_.data(), sum, stage_.data(), stage_.size());
+  system.prescribe(t_ + c * h_, stage_);
   system.evaluate(t_ + c * h_, stage_, k_[k]);
 }
 
 void RungeKutta::evaluate_end(OdeSystem& system) {
   if (end_known_) return;
+  system.prescribe(t_ + h_, y1_);
   system.evaluate(t_ + h_, y1_, k_[method_->stages.size()]);
   end_known_ = true;
 }
 
 StepOutcome RungeKutta::attempt(OdeSystem& system, double t, double h,
-                                std::span<double> y) {
+                                std::span<const double> y) {
   resize(y.size());
   y0_ = y, t_ = t, h_ = h;
   end_known_ = extra_known_ = false;
@@ -125,7 +127,7 @@ void RungeKutta::commit(std::vector<double>& y) {
   first_known_ = end_known_ && error_needs_end_;
 }
 
-double RungeKutta::initial_step(OdeSystem& system, double t, std::span<double> y) {
+double RungeKutta::initial_step(OdeSystem& system, double t, std::span<const double> y) {
   resize(y.size());
   system.evaluate(t, y, k_[0]);
   first_known_ = true;

@@ -5,12 +5,15 @@
 
 namespace ehdjet {
 
-void Links::compute(ConstVec3View r, std::size_t first_bead) {
-  const std::size_t beads = r.size();
-  first = first_bead, last = beads - 1;
-  if (length.size() != beads + 1)
-    for (auto* column : {&dx, &dy, &dz, &length}) column->resize(beads + 1);
-  for (const std::size_t k : {std::size_t{0}, std::size_t{1}, beads})
+void Links::compute(ConstVec3View r, std::size_t first_bead, BeadRange targets) {
+  const std::size_t n = r.size();
+  const BeadRange part = targets.within(n);
+  head = first_bead;
+  first = std::max(head, part.begin), last = std::min(n - 1, std::max(part.end, head));
+  beads = {first, std::max(first, part.end)};
+  if (length.size() != n + 1)
+    for (auto* column : {&dx, &dy, &dz, &length}) column->resize(n + 1);
+  for (const std::size_t k : {std::size_t{0}, std::size_t{1}, n})
     dx[k] = dy[k] = dz[k] = 0, length[k] = 1;
 
   const auto link = [&](std::size_t k, std::size_t upstream) {
@@ -19,9 +22,10 @@ void Links::compute(ConstVec3View r, std::size_t first_bead) {
     dz[k] = r.z[k] - r.z[upstream];
     length[k] = std::sqrt(dx[k] * dx[k] + dy[k] * dy[k] + dz[k] * dz[k]);
   };
-  link(first, 0);
+  std::size_t begin = first;
+  if (begin == head && begin < n) link(begin++, 0);
 #pragma omp simd
-  for (std::size_t k = first + 1; k < beads; ++k) link(k, k - 1);
+  for (std::size_t k = begin; k <= last; ++k) link(k, k - 1);
 }
 
 } // namespace ehdjet

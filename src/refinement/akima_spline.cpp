@@ -1,11 +1,12 @@
 #include "ehdjet/refinement/akima_spline.hpp"
 
 #include "ehdjet/core/error.hpp"
+#include "ehdjet/core/gsl_errors.hpp"
 
-#include <gsl/gsl_errno.h>
 #include <gsl/gsl_interp.h>
 
 #include <algorithm>
+#include <new>
 
 namespace ehdjet {
 namespace {
@@ -33,6 +34,7 @@ AkimaSpline::AkimaSpline(std::span<const double> knots)
   while (knots_.size() < least_knots)
     knots_.push_back(knots_.back() + (knots_.back() - knots_.front()));
   values_.resize(knots_.size());
+  const GslErrors as_status_codes;
   gsl_ = std::make_unique<Gsl>(knots_.size());
   if (gsl_->spline == nullptr) throw std::bad_alloc();
 }
@@ -50,13 +52,15 @@ void AkimaSpline::interpolate(std::span<const double> values, std::span<const do
     const double continued = i > 2 ? 2 * slope(i - 1) - slope(i - 2) : slope(1);
     values_[i] = values_[i - 1] + continued * (knots_[i] - knots_[i - 1]);
   }
-  if (gsl_interp_init(gsl_->spline, knots_.data(), values_.data(), knots_.size())
-      != GSL_SUCCESS)
-    throw RunError("the spline along the jet could not be set up");
+  const GslErrors as_status_codes;
+  const char* failure = "the spline along the jet could not be evaluated";
+  GslErrors::check(
+      gsl_interp_init(gsl_->spline, knots_.data(), values_.data(), knots_.size()), failure);
   gsl_interp_accel_reset(&gsl_->near);
   for (std::size_t i = 0; i < at.size(); ++i)
-    out[i] =
-        gsl_interp_eval(gsl_->spline, knots_.data(), values_.data(), at[i], &gsl_->near);
+    GslErrors::check(gsl_interp_eval_e(gsl_->spline, knots_.data(), values_.data(), at[i],
+                                       &gsl_->near, &out[i]),
+                     failure);
 }
 
 } // namespace ehdjet

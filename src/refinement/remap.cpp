@@ -1,8 +1,8 @@
 #include "ehdjet/refinement/remap.hpp"
 
 #include "ehdjet/core/error.hpp"
+#include "ehdjet/core/gsl_errors.hpp"
 
-#include <gsl/gsl_errno.h>
 #include <gsl/gsl_interp.h>
 
 #include <algorithm>
@@ -54,15 +54,20 @@ std::vector<double> Remap::smoothly(std::span<const double> quantity) const {
   std::vector<double> cumulative(from_.size(), 0.0);
   for (std::size_t i = 0; i < quantity.size(); ++i)
     cumulative[i + 1] = cumulative[i] + quantity[i];
+  const GslErrors as_status_codes;
+  const char* failure = "the cumulative curve along the jet could not be evaluated";
   const std::unique_ptr<gsl_interp, FreeInterpolation> curve(
       gsl_interp_alloc(gsl_interp_steffen, from_.size()));
   if (!curve) throw std::bad_alloc();
-  if (gsl_interp_init(curve.get(), from_.data(), cumulative.data(), from_.size())
-      != GSL_SUCCESS)
-    throw RunError("the cumulative curve along the jet could not be set up");
+  GslErrors::check(
+      gsl_interp_init(curve.get(), from_.data(), cumulative.data(), from_.size()), failure);
   gsl_interp_accel near{};
   const auto at = [&](double s) {
-    return gsl_interp_eval(curve.get(), from_.data(), cumulative.data(), s, &near);
+    double value = 0;
+    GslErrors::check(
+        gsl_interp_eval_e(curve.get(), from_.data(), cumulative.data(), s, &near, &value),
+        failure);
+    return value;
   };
   std::vector<double> moved(to_.size() - 1);
   double before = 0;

@@ -1,5 +1,6 @@
 #include "ehdjet/simulation/build.hpp"
 
+#include "ehdjet/budget/balance.hpp"
 #include "ehdjet/coulomb/make_solver.hpp"
 #include "ehdjet/events/insertion.hpp"
 #include "ehdjet/events/landing.hpp"
@@ -23,10 +24,6 @@ Nozzle nozzle_of(const NozzleConfig& c) {
           .amplitude = c.amplitude,
           .angular_frequency = c.angular_frequency,
           .phase = c.phase};
-}
-
-NewBead new_bead_of(const NozzleConfig& c) {
-  return NewBead::from(c.radius, c.link_length, c.density, c.charge_density);
 }
 
 std::optional<Varicosity> varicosity_of(const SceneConfig& c) {
@@ -59,38 +56,30 @@ RefinementRule refinement_rule(const SceneConfig& c) {
   return rule;
 }
 
-double acting_energy(const JetState& jet, std::optional<Embryo> embryo,
-                     CoulombSolver& solver) {
-  std::vector<double> charge = jet.charge;
-  const auto r = jet.columns().position();
-  if (jet.has_embryo) charge[1] *= embryo->charge_fraction((r[2] - r[0]).norm());
-  return solver.energy(r, charge);
+std::shared_ptr<const InflowRule> build_inflow(const SceneConfig& c) {
+  if (!c.nozzle) return nullptr;
+  const NozzleConfig& n = *c.nozzle;
+  return std::make_shared<EmbryoInflow>(
+      nozzle_of(n),
+      EmbryoInflow::Rule{.link_length = n.link_length,
+                         .born = LinkContent::of_cylinder(n.radius, n.link_length,
+                                                          n.density, n.charge_density),
+                         .varicosity = varicosity_of(c),
+                         .release = n.insertion_velocity == InsertionVelocity::half
+                                        ? ReleaseVelocity::half
+                                        : ReleaseVelocity::nozzle});
 }
 
-// For energies: what the solver of the forces keeps between its calls stays its own.
-std::unique_ptr<CoulombSolver> second_solver(const Scene& scene) {
-  SolverOptions options = solver_options(*scene.config.coulomb, scene.costs);
-  options.check_every.reset();
-  return make_coulomb_solver(options);
-}
-
-std::unique_ptr<Refinement> build_refinement(const Scene& scene) {
-  const SceneConfig& c = scene.config;
-  std::optional<Refinement::Recording> recording;
+std::unique_ptr<Refinement> build_refinement(const SceneConfig& c,
+                                             const JetDynamics& dynamics) {
+  Refinement::Totals totals;
   if (c.output.refinements != RefinementRecords::none)
-    recording = {.elastic_modulus =
-                     c.viscoelasticity ? c.viscoelasticity->elastic_modulus : 0,
-                 .coulomb_energy = {}};
-  if (c.output.refinements == RefinementRecords::energies) {
-    std::optional<Embryo> embryo;
-    if (c.nozzle) embryo = Embryo{.link_length = c.nozzle->link_length};
-    const std::shared_ptr<CoulombSolver> solver = second_solver(scene);
-    recording->coulomb_energy = [embryo, solver](const JetState& jet) {
-      return acting_energy(jet, embryo, *solver);
-    };
-  }
+    totals = [balance = std::make_shared<Balance>(
+                  dynamics, std::span<const std::unique_ptr<Event>>{}),
+              with_coulomb = c.output.refinements == RefinementRecords::energies](
+                 const JetState& jet) { return balance->totals(jet, with_coulomb); };
   return std::make_unique<Refinement>(refinement_rule(c), c.refinement->interval,
-                                      std::move(recording),
+                                      std::move(totals),
                                       c.integrator.events == EventPlacement::step_end);
 }
 
@@ -131,21 +120,6 @@ ErrorScale error_scale(const Scene& scene) {
   return scale;
 }
 
-JetState nozzle_jet(const NozzleConfig& c, std::size_t columns) {
-  JetState jet;
-  const NewBead born = new_bead_of(c);
-  jet.y.assign(columns, 0.0);
-  jet.mass = {born.mass}, jet.charge = {born.charge}, jet.volume = {born.volume};
-  insert_bead(jet, 1,
-              {.position = {c.link_length, 0, 0},
-               .velocity = {c.velocity, 0, 0},
-               .stress = 0,
-               .volume = born.volume,
-               .mass = born.mass,
-               .charge = born.charge});
-  return jet;
-}
-
 JetState chain_jet(const ChainBeads& beads, bool with_stress) {
   JetState jet;
   for (const auto* column : {&beads.x, &beads.y, &beads.z, &beads.vx, &beads.vy, &beads.vz})
@@ -160,8 +134,8 @@ JetState chain_jet(const ChainBeads& beads, bool with_stress) {
 JetState initial_jet(const Scene& scene) {
   const bool with_stress = carries_stress(scene.config);
   constexpr std::size_t kinematic = JetColumns<double>::kinematic_columns;
-  if (scene.config.nozzle)
-    return nozzle_jet(*scene.config.nozzle, with_stress ? kinematic + 1 : kinematic);
+  if (const auto inflow = build_inflow(scene.config))
+    return inflow->start(with_stress ? kinematic + 1 : kinematic);
   return chain_jet(scene.chain, with_stress);
 }
 
@@ -179,11 +153,13 @@ SolverOptions solver_options(const CoulombConfig& c,
   return options;
 }
 
-std::unique_ptr<JetDynamics> build_dynamics(const Scene& scene) {
+namespace {
+
+std::unique_ptr<JetDynamics> compose_dynamics(const Scene& scene,
+                                              std::shared_ptr<const Inflow> inflow) {
   const SceneConfig& c = scene.config;
   auto dynamics = std::make_unique<JetDynamics>();
-  if (c.nozzle)
-    dynamics->set_nozzle(nozzle_of(*c.nozzle), {.link_length = c.nozzle->link_length});
+  dynamics->set_inflow(std::move(inflow));
   if (c.chain)
     dynamics->hold(
         {.first = c.chain->fixed == FixedEnds::first || c.chain->fixed == FixedEnds::both,
@@ -203,30 +179,10 @@ std::unique_ptr<JetDynamics> build_dynamics(const Scene& scene) {
   return dynamics;
 }
 
-std::unique_ptr<Budget> build_budget(const Scene& scene) {
-  const SceneConfig& c = scene.config;
-  BudgetTerms terms;
-  if (c.nozzle)
-    terms.source = {.nozzle = nozzle_of(*c.nozzle),
-                    .embryo = {.link_length = c.nozzle->link_length}};
-  const FixedEnds fixed = c.chain ? c.chain->fixed : FixedEnds::none;
-  terms.first_held = fixed == FixedEnds::first || fixed == FixedEnds::both;
-  terms.last_held = fixed == FixedEnds::last || fixed == FixedEnds::both;
-  if (c.field) terms.field = field_strength(c);
-  if (c.gravity) terms.gravity = c.gravity->acceleration;
-  if (carries_stress(c))
-    terms.fluid = {.elastic_modulus = c.viscoelasticity->elastic_modulus,
-                   .viscosity = c.viscoelasticity->viscosity};
-  if (c.surface_tension) {
-    if (c.surface_tension->form == SurfaceTensionForm::line)
-      terms.line_tension = c.surface_tension->coefficient;
-    else
-      terms.surface_tension =
-          std::make_unique<BendingSurfaceTension>(c.surface_tension->coefficient);
-  }
-  if (c.coulomb) terms.coulomb = second_solver(scene);
-  terms.lands = c.collector.has_value(), terms.refines = c.refinement.has_value();
-  return std::make_unique<Budget>(std::move(terms));
+} // namespace
+
+std::unique_ptr<JetDynamics> build_dynamics(const Scene& scene) {
+  return compose_dynamics(scene, build_inflow(scene.config));
 }
 
 std::unique_ptr<Simulation> build_simulation(const Scene& scene) {
@@ -237,8 +193,9 @@ std::unique_ptr<Simulation> build_simulation(const Scene& scene) {
                     .longest = c.integrator.max_step.value_or(StepLimits{}.longest),
                     .shortest = c.integrator.min_step,
                     .shortest_link = shortest_link(scene)};
-  auto simulation = std::make_unique<Simulation>(initial_jet(scene), build_dynamics(scene),
-                                                 std::move(integrator), limits);
+  const std::shared_ptr<const InflowRule> inflow = build_inflow(c);
+  auto simulation = std::make_unique<Simulation>(
+      initial_jet(scene), compose_dynamics(scene, inflow), std::move(integrator), limits);
   if (c.integrator.events == EventPlacement::step_end)
     simulation->snap_events_to_step_ends();
 
@@ -252,16 +209,9 @@ std::unique_ptr<Simulation> build_simulation(const Scene& scene) {
   if (c.collector)
     simulation->add(
         std::make_unique<Landing>(c.collector->distance, first_is_free ? 0 : 1, may_pass));
-  if (c.nozzle) {
-    const Embryo embryo{.link_length = c.nozzle->link_length};
-    const auto velocity = c.nozzle->insertion_velocity == InsertionVelocity::half
-                              ? ReleaseVelocity::half
-                              : ReleaseVelocity::nozzle;
-    simulation->add(std::make_unique<Release>(nozzle_of(*c.nozzle), embryo, velocity));
-    simulation->add(std::make_unique<Insertion>(nozzle_of(*c.nozzle), embryo,
-                                                new_bead_of(*c.nozzle), varicosity_of(c)));
-  }
-  if (c.refinement) simulation->add(build_refinement(scene));
+  if (inflow)
+    for (auto& event : inflow->events()) simulation->add(std::move(event));
+  if (c.refinement) simulation->add(build_refinement(c, simulation->dynamics()));
   return simulation;
 }
 

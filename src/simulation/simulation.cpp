@@ -24,7 +24,10 @@ public:
   explicit FirstNan(JetDynamics& dynamics, std::size_t beads)
       : dynamics_(dynamics)
       , beads_(beads) {}
-  void evaluate(double t, std::span<double> y, std::span<double> rate) override {
+  void prescribe(double t, std::span<double> y) const override {
+    dynamics_.prescribe(t, y);
+  }
+  void evaluate(double t, std::span<const double> y, std::span<double> rate) override {
     dynamics_.evaluate(t, y, rate);
     if (!cause.empty()) return;
     for (std::size_t i = 0; i < rate.size(); ++i)
@@ -82,7 +85,7 @@ Simulation::Simulation(JetState jet, std::unique_ptr<JetDynamics> dynamics,
     , integrator_(std::move(integrator))
     , limits_(limits)
     , control_(integrator_->error_order())
-    , checks_coulomb_(dynamics_->coulomb_checks().has_value())
+    , checks_coulomb_(dynamics_->checks().has_value())
     , time_(jet_.time) {
   EHDJET_EXPECTS(limits_.fixed || integrator_->error_order() > 0);
   for (std::size_t k = 1; k < jet_.beads(); ++k) {
@@ -219,8 +222,8 @@ double Simulation::attempt_step(double h) {
     const StepOutcome outcome = integrator_->attempt(*dynamics_, jet_.time, h, jet_.y);
     statistics_.evaluations = dynamics_->evaluations();
     if (checks_coulomb_) {
-      const CoulombChecks checks = *dynamics_->coulomb_checks();
-      statistics_.coulomb_error = checks.last;
+      const TermReport::Checks checks = *dynamics_->checks();
+      statistics_.coulomb_error = checks.last_error;
       statistics_.coulomb_violations = checks.violations;
     }
     control_.set_error_order(integrator_->error_order());

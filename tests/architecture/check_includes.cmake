@@ -11,7 +11,7 @@ set(forces      core jet coulomb forces)
 set(dynamics    core jet forces integrators dynamics)
 set(events      core jet refinement integrators events)
 set(scene       core coulomb integrators refinement scene)
-set(budget      core jet coulomb forces events budget simulation/observer.hpp)
+set(budget      core jet forces dynamics integrators events budget simulation/observer.hpp)
 set(simulation  core jet refinement coulomb forces integrators dynamics events scene budget simulation)
 set(io          core jet io simulation/observer.hpp) # files see what an observer sees
 set(cli         core jet refinement coulomb forces integrators dynamics events scene budget simulation io cli)

@@ -1,4 +1,5 @@
 #include "ehdjet/dynamics/jet_dynamics.hpp"
+#include "ehdjet/events/insertion.hpp"
 #include "ehdjet/forces/maxwell.hpp"
 #include "ehdjet/forces/surface_tension.hpp"
 
@@ -100,6 +101,66 @@ void expect_same(JetDynamics& dynamics, const JetState& jet, const Held& held,
 constexpr Nozzle turning{
     .fluid_velocity = 0.7, .amplitude = 0.5, .angular_frequency = 2, .phase = 0.4};
 
+std::shared_ptr<const Inflow> turning_inflow() {
+  return std::make_shared<EmbryoInflow>(turning,
+                                        EmbryoInflow::Rule{.link_length = 0.1, .born = {}});
+}
+
+/// Dashpots along the links, F = c (w.t) t, and drag on the beads, F = -b (1 + |v|^2) v.
+class Dashpots final : public ForceTerm {
+public:
+  Dashpots(double dashpot, double drag)
+      : c_(dashpot)
+      , b_(drag) {}
+  [[nodiscard]] std::string_view name() const override { return "dashpots"; }
+  void add_force(const Stage& stage, Vec3View force) override {
+    const Links& links = stage.links();
+    const auto v = stage.columns.velocity();
+    for (std::size_t k = links.first; k <= links.last; ++k) {
+      const std::size_t up = links.upstream(k);
+      const Vec3 t = links.vector(k) / links.length[k];
+      const Vec3 pull = c_ * (v[k] - v[up]).dot(t) * t;
+      force.add(k, -pull), force.add(up, pull);
+    }
+    for (std::size_t k = 0; k < stage.beads(); ++k)
+      force.add(k, -b_ * (1 + v[k].squaredNorm()) * v[k]);
+  }
+  void add_derivatives(const Stage& stage, LinkDerivatives& out) override {
+    const Links& links = stage.links();
+    const auto v = stage.columns.velocity();
+    for (std::size_t k = links.first; k <= links.last; ++k) {
+      const Vec3 d = links.vector(k), t = d / links.length[k];
+      const Vec3 w = v[k] - v[links.upstream(k)];
+      const Mat3 along = t * t.transpose();
+      out.add_damping(k, c_ * along);
+      // d/dd of (w.d) d/l^2
+      out.add_pull(k,
+                   c_ / links.length[k]
+                       * (t * w.transpose() + w.dot(t) * (Mat3::Identity() - 2 * along)));
+    }
+    for (std::size_t k = 0; k < stage.beads(); ++k)
+      out.add_drag(
+          k,
+          b_ * ((1 + v[k].squaredNorm()) * Mat3::Identity() + 2 * v[k] * v[k].transpose()));
+  }
+
+private:
+  double c_, b_; // [N s/m]
+};
+
+TEST(ChainJacobian, has_damping_and_drag) {
+  for (const bool with_stress : {false, true}) {
+    JetDynamics dynamics;
+    if (with_stress) dynamics.set_rheology(std::make_unique<Maxwell>(3, 2));
+    dynamics.add(std::make_unique<Dashpots>(0.9, 0.4));
+    expect_same(dynamics, BentJet(6, with_stress).jet, {});
+    dynamics.hold({.first = true, .last = true});
+    expect_same(
+        dynamics, BentJet(6, with_stress).jet,
+        {{0, 5}, with_stress ? std::vector<std::size_t>{0} : std::vector<std::size_t>{}});
+  }
+}
+
 TEST(ChainJacobian, is_what_the_local_forces_answer) {
   for (const std::size_t n : {2U, 3U, 7U}) {
     JetDynamics dynamics;
@@ -140,7 +201,7 @@ TEST(ChainJacobian, knows_embryos_and_landed_beads) {
   JetDynamics dynamics;
   dynamics.set_rheology(std::make_unique<Maxwell>(3, 2));
   dynamics.add(std::make_unique<LineSurfaceTension>(0.8));
-  dynamics.set_nozzle(turning, {.link_length = 0.1});
+  dynamics.set_inflow(turning_inflow());
   BentJet bent(8);
   bent.jet.has_embryo = true;
   bent.jet.landed = {{.bead = 4}, {.bead = 7}};
@@ -168,14 +229,17 @@ TEST(ChainJacobian, knows_how_the_nozzle_moves) {
     JetDynamics dynamics;
     dynamics.set_rheology(std::make_unique<Maxwell>(3, 2));
     dynamics.add(std::make_unique<LineSurfaceTension>(0.8));
-    dynamics.set_nozzle(turning, {.link_length = 0.1});
+    dynamics.add(std::make_unique<Dashpots>(0.9, 0.4));
+    dynamics.set_inflow(turning_inflow());
     BentJet bent(5);
     bent.jet.has_embryo = embryo;
     dynamics.bind(bent.jet);
     std::vector<double>& y = bent.jet.y;
     const double t = 0.3, h = 1e-5;
     std::vector<double> later(y.size()), earlier(y.size()), rate(y.size(), 0.0);
+    dynamics.prescribe(t + h, y);
     dynamics.evaluate(t + h, y, later);
+    dynamics.prescribe(t - h, y);
     dynamics.evaluate(t - h, y, earlier);
     dynamics.prescribe(t, y);
     dynamics.stiff_part()->linearize(t, y);

@@ -92,6 +92,7 @@ struct Rates {
       : rate(jet.y.size())
       , columns{rate, jet.beads()} {
     dynamics.bind(jet);
+    dynamics.prescribe(t, jet.y);
     dynamics.evaluate(t, jet.y, rate);
   }
   std::vector<double> rate;
@@ -220,8 +221,7 @@ TEST(JetDynamics, puts_nozzle_and_embryo_in_their_places_at_any_time) {
   JetState jet = with_embryo(3.7e-4, t);
   const auto dynamics = build_dynamics(case_one());
   dynamics->bind(jet);
-  std::vector<double> rate(jet.y.size());
-  dynamics->evaluate(t, jet.y, rate);
+  dynamics->prescribe(t, jet.y);
   const auto r = jet.columns().position();
   const double round_off = 16 * epsilon * angle;
   EXPECT_LE((r[0] - 1e-5 * Vec3(0, std::cos(angle), std::sin(angle))).norm(),
@@ -319,6 +319,58 @@ TEST(JetDynamics, counts_coincident_pairs_over_all_evaluations) {
     EXPECT_EQ(dynamics->coincident_pairs(), call);
     EXPECT_EQ(dynamics->evaluations(), call);
   }
+}
+
+// A part of the rates is what the whole has there, with every source; the forces of parts of the
+// sources add up. The right-hand side is asked for parts when beads move at different paces.
+TEST(JetDynamics, can_be_asked_for_some_beads_and_some_sources) {
+  for (const bool with_embryo : {false, true})
+    for (const auto form : {SurfaceTensionForm::paper, SurfaceTensionForm::line}) {
+      Scene scene = case_one();
+      scene.config.surface_tension->form = form;
+      const auto simulation = build_simulation(scene);
+      for (double t = 1e-3;
+           simulation->jet().time < 1e-3 || simulation->jet().has_embryo != with_embryo;
+           t += 5e-6)
+        simulation->run_until(t);
+      JetState jet = simulation->jet();
+      const std::size_t n = jet.beads();
+      for (std::size_t k = 0; k < n; ++k) // off the axis
+        jet.columns().position().y[k] += 1e-5 * std::sin(static_cast<double>(k));
+      const auto dynamics = build_dynamics(scene);
+      const Rates whole(*dynamics, jet.time, jet);
+      double fastest = 0;
+      for (std::size_t k = 0; k < n; ++k)
+        fastest = std::max(fastest, whole.columns.velocity()[k].norm());
+      for (const auto& [begin, end] : {std::pair<std::size_t, std::size_t>{0, 1},
+                                       {0, 2},
+                                       {0, 5},
+                                       {1, 2},
+                                       {2, 9},
+                                       {5, n},
+                                       {n - 1, n}}) {
+        const BeadRange targets{begin, end};
+        std::vector<double> part(jet.y.size()), near(part), far(part);
+        dynamics->evaluate(jet.time, jet.y, part, targets, {});
+        dynamics->evaluate(jet.time, jet.y, near, targets, {0, 6});
+        dynamics->evaluate(jet.time, jet.y, far, targets, {6, n});
+        std::vector<double> none(part);
+        dynamics->evaluate(jet.time, jet.y, none, targets, {0, 0});
+        const JetColumns<double> some{part, n}, a{near, n}, b{far, n}, local{none, n};
+        for (std::size_t k = begin; k < end; ++k) {
+          EXPECT_EQ(some.position()[k], whole.columns.position()[k]) << k;
+          EXPECT_EQ(some.stress()[k], whole.columns.stress()[k]) << k;
+          EXPECT_LE((some.velocity()[k] - whole.columns.velocity()[k]).norm(),
+                    1e-12 * fastest)
+              << k << ' ' << begin << ' ' << end;
+          EXPECT_LE((a.velocity()[k] + b.velocity()[k] - local.velocity()[k]
+                     - whole.columns.velocity()[k])
+                        .norm(),
+                    1e-12 * fastest)
+              << k;
+        }
+      }
+    }
 }
 
 /// A force that is not a number on one bead.

@@ -19,8 +19,9 @@ const Nozzle nozzle{.fluid_velocity = pvp::velocity,
                     .amplitude = 1e-5,
                     .angular_frequency = 1e4,
                     .phase = 0.3};
-const Embryo embryo{.link_length = l};
-const NewBead born = NewBead::from(pvp::radius, l, pvp::density, pvp::charge_density);
+const LinkContent born =
+    LinkContent::of_cylinder(pvp::radius, l, pvp::density, pvp::charge_density);
+const EmbryoInflow inflow(nozzle, {.link_length = l, .born = born});
 
 /// The nozzle's jet with its first bead at `distance` from the nozzle, moving and stressed.
 JetState jet_at(double distance) {
@@ -42,14 +43,14 @@ struct Books {
   EventContext with(JetState& jet) { return {jet, ledger, statistics, deposited, refined}; }
 };
 
-TEST(NewBead, carries_what_a_cylinder_of_one_link_holds) {
+TEST(LinkContent, carries_what_a_cylinder_of_one_link_holds) {
   EXPECT_NEAR(born.volume / (1.570796326794897e-6 * cm3), 1, 4 * epsilon);
   EXPECT_NEAR(born.mass / (1.318296354319669e-6 * gram), 1, 4 * epsilon);
   EXPECT_NEAR(born.charge / (6.911503837897547e-2 * statC), 1, 4 * epsilon);
 }
 
 TEST(Insertion, is_due_from_one_and_a_half_links_on_unless_an_embryo_is_there) {
-  const Insertion insertion(nozzle, embryo, born);
+  const Insertion insertion(inflow);
   const double beyond = 1 + 8 * epsilon;
   EXPECT_FALSE(insertion.due(jet_at(1.5 * l / beyond)));
   EXPECT_TRUE(insertion.due(jet_at(1.5 * l * beyond)));
@@ -62,7 +63,7 @@ TEST(Insertion, is_due_from_one_and_a_half_links_on_unless_an_embryo_is_there) {
 }
 
 TEST(Insertion, makes_an_embryo_and_leaves_the_other_beads_as_they_are) {
-  Insertion insertion(nozzle, embryo, born);
+  Insertion insertion(inflow);
   JetState jet = jet_at(1.5 * l);
   const Bead before = bead_at(jet, 1);
   Books books;
@@ -92,11 +93,11 @@ TEST(Insertion, makes_an_embryo_and_leaves_the_other_beads_as_they_are) {
 }
 
 TEST(Release, is_due_from_two_links_on_if_there_is_an_embryo) {
-  const Release release(nozzle, embryo, ReleaseVelocity::half);
+  const Release release(inflow);
   for (const double distance : {1.99 * l, 2.01 * l}) {
     JetState jet = jet_at(distance);
     EXPECT_FALSE(release.due(jet));
-    Insertion insertion(nozzle, embryo, born);
+    Insertion insertion(inflow);
     Books books;
     EventContext context = books.with(jet);
     insertion.apply(context);
@@ -113,9 +114,10 @@ TEST(Release, frees_the_embryo_with_half_the_velocity_of_its_neighbour_or_the_no
     JetState jet = jet_at(2 * l);
     Books books;
     EventContext context = books.with(jet);
-    Insertion(nozzle, embryo, born).apply(context);
+    Insertion(inflow).apply(context);
     const Bead before = bead_at(jet, 2);
-    Release(nozzle, embryo, choice).apply(context);
+    const EmbryoInflow chosen(nozzle, {.link_length = l, .born = born, .release = choice});
+    Release(chosen).apply(context);
     EXPECT_FALSE(jet.has_embryo);
     ASSERT_EQ(jet.beads(), 3U);
     const Bead freed = bead_at(jet, 1), neighbour = bead_at(jet, 2);

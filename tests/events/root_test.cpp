@@ -1,9 +1,12 @@
+#include "ehdjet/core/error.hpp"
 #include "ehdjet/events/root.hpp"
 
+#include <gsl/gsl_errno.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
+#include <string>
 
 namespace ehdjet {
 namespace {
@@ -29,7 +32,37 @@ TEST(FirstCrossing, is_the_root_to_round_off_and_never_before_it) {
 
 TEST(FirstCrossing, is_none_if_the_step_ends_below) {
   EXPECT_FALSE(first_crossing([](double s) { return s - 1.0001; }));
-  EXPECT_FALSE(first_crossing([](double) { return std::nan(""); }));
+}
+
+bool own_handler_called = false;
+void own_handler(const char*, const char*, int, int) {
+  own_handler_called = true;
+}
+
+// A library does not end the program that uses it, and leaves the program's handler of GSL's errors
+// alone.
+TEST(FirstCrossing,
+     that_is_not_a_number_is_an_error_and_none_for_the_handler_of_the_program) {
+  gsl_error_handler_t* const before = gsl_set_error_handler(own_handler);
+  const auto not_a_number_at = [](double place) {
+    return [place](double s) { return std::abs(s - place) < 0.1 ? std::nan("") : s - 0.5; };
+  };
+  for (const double place : {0.0, 1.0, 0.5}) {
+    try {
+      (void)first_crossing(not_a_number_at(place));
+      ADD_FAILURE() << place;
+    } catch (const RunError& e) {
+      EXPECT_NE(std::string(e.what()).find("not a number"), std::string::npos);
+    }
+  }
+  struct Own {};
+  EXPECT_THROW((void)first_crossing([](double s) {
+                 if (s > 0 && s < 1) throw Own();
+                 return s - 0.5;
+               }),
+               Own);
+  EXPECT_FALSE(own_handler_called);
+  EXPECT_EQ(gsl_set_error_handler(before), own_handler);
 }
 
 TEST(FirstCrossing, is_the_start_if_that_is_not_below) {

@@ -59,7 +59,7 @@ TEST(CoulombForce, counts_beads_in_the_same_place_over_all_evaluations) {
   CoulombForce coulomb(make_coulomb_solver("direct"));
   for (int call = 1; call <= 3; ++call) {
     for (const Vec3& f : chain.force(coulomb)) EXPECT_TRUE(f.allFinite());
-    EXPECT_EQ(coulomb.coincident_pairs(), static_cast<std::uint64_t>(call));
+    EXPECT_EQ(coulomb.report()->coincident_pairs, static_cast<std::uint64_t>(call));
   }
 }
 

@@ -1,4 +1,10 @@
+#include "ehdjet/budget/balance.hpp"
 #include "ehdjet/coulomb/make_solver.hpp"
+#include "ehdjet/forces/coulomb_force.hpp"
+#include "ehdjet/forces/external_field.hpp"
+#include "ehdjet/forces/gravity.hpp"
+#include "ehdjet/forces/maxwell.hpp"
+#include "ehdjet/forces/surface_tension.hpp"
 #include "ehdjet/integrators/butcher_tableau.hpp"
 #include "ehdjet/integrators/runge_kutta.hpp"
 
@@ -6,12 +12,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "support/budgeted.hpp"
+#include "support/independent_balance.hpp"
+#include "support/own_event.hpp"
+#include "support/own_force.hpp"
 #include "support/refined.hpp"
 
 namespace ehdjet {
@@ -89,8 +98,9 @@ TEST(Budget, has_columns_for_what_the_scene_has_and_no_others) {
   using Names = std::vector<std::string>;
   const auto names = [](const Scene& scene) {
     Names all;
-    const auto budget = build_budget(scene);
-    for (const auto& c : budget->columns()) all.push_back(c.name);
+    const auto simulation = build_simulation(scene);
+    const Budget budget(simulation->dynamics(), simulation->events());
+    for (const auto& c : budget.columns()) all.push_back(c.name);
     return all;
   };
   Scene bare = chain_scene();
@@ -117,32 +127,76 @@ TEST(Budget, has_columns_for_what_the_scene_has_and_no_others) {
   EXPECT_FALSE(has(jet, "held_work"));
 }
 
-// Every kind of force is in the balance: one that is off by a thousandth (gravity, weak as it is,
+/// A term whose force is a little stronger than it says.
+class Stronger final : public Rheology {
+public:
+  Stronger(std::unique_ptr<ForceTerm> term, double factor)
+      : term_(std::move(term))
+      , factor_(factor) {}
+  [[nodiscard]] std::string_view name() const override { return term_->name(); }
+  void add_force(const Stage& stage, Vec3View force) override {
+    const std::size_t n = stage.beads();
+    std::vector<double> own(3 * n);
+    const std::span<double> f(own);
+    const Vec3View view{f.subspan(0, n), f.subspan(n, n), f.subspan(2 * n, n)};
+    term_->add_force(stage, view);
+    for (std::size_t k = 0; k < n; ++k) force.add(k, factor_ * view[k]);
+  }
+  void stress_rate(const Stage& stage, std::span<double> rate) override {
+    dynamic_cast<Rheology&>(*term_).stress_rate(stage, rate);
+  }
+  // Its account is that of the force as it should be.
+  [[nodiscard]] TermAccount account() const override { return term_->account(); }
+  [[nodiscard]] double energy(const Stage& stage) override { return term_->energy(stage); }
+  [[nodiscard]] double potential(const Stage& stage, std::size_t bead) override {
+    return term_->potential(stage, bead);
+  }
+  void add_power(const Stage& stage, Exchange& exchange) override {
+    term_->add_power(stage, exchange);
+  }
+
+private:
+  std::unique_ptr<ForceTerm> term_;
+  double factor_;
+};
+
+std::unique_ptr<Simulation> simulation_of(const Scene& scene,
+                                          std::unique_ptr<JetDynamics> dynamics) {
+  const ErrorScale scale{.rtol = 1e-10, .column_scale = {2e-4, 2e-4, 2e-4, 1, 1, 1, 500}};
+  return std::make_unique<Simulation>(
+      initial_jet(scene), std::move(dynamics),
+      std::make_unique<RungeKutta>(butcher_tableau("dop853"), scale), StepLimits{});
+}
+
+// Every kind of force that stores energy: one that is off by a thousandth (gravity, weak as it is,
 // by a hundredth) leaves a residual.
 TEST(Budget, does_not_close_if_a_force_is_not_what_its_energy_says) {
-  const std::pair<const char*, std::function<void(SceneConfig&)>> wrong[] = {
-      {"field", [](SceneConfig& c) { *c.field->strength *= 1.001; }},
-      {"gravity", [](SceneConfig& c) { c.gravity->acceleration *= 1.01; }},
-      {"modulus", [](SceneConfig& c) { c.viscoelasticity->elastic_modulus *= 1.001; }},
-      {"viscosity", [](SceneConfig& c) { c.viscoelasticity->viscosity *= 1.001; }},
-      {"paper", [](SceneConfig& c) { c.surface_tension->coefficient *= 1.001; }},
-      {"line",
-       [](SceneConfig& c) {
-         c.surface_tension->form = SurfaceTensionForm::line;
-         c.surface_tension->coefficient *= 1.001;
-       }},
-  };
-  for (const auto& [name, change] : wrong) {
-    GoldenChain golden("free");
-    golden.scene.config.gravity = GravityConfig{pvp::gravity};
-    if (std::string(name) == "line")
-      golden.scene.config.surface_tension->form = SurfaceTensionForm::line;
-    Scene other = golden.scene;
-    change(other.config);
-    BudgetedRun run(build_simulation(golden.scene), build_budget(other), 2e-4);
-    run.simulation->run_until(2e-4);
-    EXPECT_GT(run.worst(), 1e-8 * 6 * erg) << name;
-  }
+  const std::string kinds[] = {"field", "gravity", "Coulomb", "fluid", "line"};
+  for (const std::string& kind : kinds)
+    for (const bool wrong : {false, true}) {
+      const GoldenChain golden("free");
+      const double factor = !wrong ? 1 : kind == "gravity" ? 1.01 : 1.001;
+      auto dynamics = std::make_unique<JetDynamics>();
+      const auto add = [&](const std::string& name, std::unique_ptr<ForceTerm> term) {
+        if (name == kind) term = std::make_unique<Stronger>(std::move(term), factor);
+        dynamics->add(std::move(term));
+      };
+      add("field", std::make_unique<ExternalField>(*golden.scene.config.field->strength));
+      add("gravity", std::make_unique<Gravity>(pvp::gravity));
+      add("Coulomb", std::make_unique<CoulombForce>(make_coulomb_solver("direct")));
+      add("line", std::make_unique<LineSurfaceTension>(pvp::surface_tension));
+      std::unique_ptr<Rheology> fluid =
+          std::make_unique<Maxwell>(pvp::modulus, pvp::viscosity);
+      if (kind == "fluid") fluid = std::make_unique<Stronger>(std::move(fluid), factor);
+      dynamics->set_rheology(std::move(fluid));
+      BudgetedRun run(simulation_of(golden.scene, std::move(dynamics)), 2e-4);
+      run.simulation->run_until(2e-4);
+      if (wrong) {
+        EXPECT_GT(run.worst(), 1e-8 * 6 * erg) << kind;
+      } else {
+        EXPECT_LT(run.worst(), 1e-9 * 6 * erg) << kind;
+      }
+    }
 }
 
 /// The stress of each link pulls at the next one.
@@ -159,20 +213,154 @@ public:
     }
   }
   [[nodiscard]] std::string_view name() const override { return "misplaced"; }
+  [[nodiscard]] TermAccount account() const override {
+    return {};
+  } // neither work nor energy
 };
 
 TEST(Budget, does_not_close_if_stress_pulls_at_the_wrong_link) {
   const GoldenChain golden("free");
   auto dynamics = build_dynamics(golden.scene);
   dynamics->add(std::make_unique<MisplacedStress>());
-  const ErrorScale scale{.rtol = 1e-10, .column_scale = {2e-4, 2e-4, 2e-4, 1, 1, 1, 500}};
-  auto integrator = std::make_unique<RungeKutta>(butcher_tableau("dop853"), scale);
-  BudgetedRun run(std::make_unique<Simulation>(initial_jet(golden.scene),
-                                               std::move(dynamics), std::move(integrator),
-                                               StepLimits{}),
-                  build_budget(golden.scene), 2e-4);
+  BudgetedRun run(simulation_of(golden.scene, std::move(dynamics)), 2e-4);
   run.simulation->run_until(2e-4);
   EXPECT_GT(std::abs(run.last().at("energy_residual_relative")), 1e-4);
+}
+
+// ---- forces and events from outside -------------------------------------------------------------
+
+TEST(Budget, has_columns_for_a_force_and_an_event_of_another_program_and_closes) {
+  for (const bool own : {false, true}) {
+    const Scene scene = case_one("dormand-prince", 1e-7);
+    auto dynamics = build_dynamics(scene);
+    if (own) dynamics->add(std::make_unique<LinearDrag>(2 * pvp::mass / 1e-3));
+    const ErrorScale scale{.rtol = 1e-7,
+                           .column_scale = {2e-4, 2e-4, 2e-4, 1, 1, 1, 0.1 * pvp::modulus}};
+    auto simulation = std::make_unique<Simulation>(
+        initial_jet(scene), std::move(dynamics),
+        std::make_unique<RungeKutta>(butcher_tableau("dormand-prince"), scale),
+        StepLimits{});
+    if (own) simulation->add(std::make_unique<Discharge>(5.03e-4, 0.3));
+    BudgetedRun run(std::move(simulation), 1e-3);
+    run.simulation->run_until(1e-3);
+    const BudgetRow& last = run.last();
+    EXPECT_LE(std::abs(last.at("energy_residual_relative")), 1e-6) << own;
+    EXPECT_LE(last.at("momentum_residual_relative"), 1e-6) << own;
+    EXPECT_EQ(last.contains("linear_drag_work"), own);
+    EXPECT_EQ(last.contains("discharge_energy"), own);
+    if (!own) continue;
+    EXPECT_LT(last.at("linear_drag_work"), 0);
+    EXPECT_LT(last.at("linear_drag_impulse_x"), 0);
+    EXPECT_LT(last.at("discharge_energy"), 0);
+  }
+}
+
+// ---- against an independent computation -------------------------------------------------------
+
+/// Compares, at several times of a run, energies, flows and what events bring in.
+class Comparison final : public StepObserver {
+public:
+  Comparison(const Scene& scene, const Simulation& simulation)
+      : independent_(scene)
+      , balance_(simulation.dynamics(), simulation.events()) {}
+  void begin_step(const DenseStep&, std::span<const std::unique_ptr<Event>>) override {}
+  void end_step(double, double) override {}
+  void before_event(const Event&, const JetState& jet) override { before_ = jet; }
+  void after_event(const Event& event, const JetState& jet) override {
+    const auto total = [this](const JetState& j) {
+      double sum = 0;
+      for (const auto& [name, energy] : independent_.energies(j)) sum += energy;
+      return sum;
+    };
+    const Flow flow = balance_.jump(before_, jet);
+    EXPECT_NEAR(flow.energy, total(jet) - total(before_), 1e-12 * size_) << event.name();
+    ++jumps;
+  }
+  void compare(JetState jet) {
+    balance_.prescribe(jet);
+    const auto energies = independent_.energies(jet);
+    const JetEnergies ours = balance_.energies(jet);
+    ASSERT_EQ(ours.stored.size() + 1, energies.size());
+    size_ = 0;
+    for (const auto& [name, energy] : energies) size_ += std::abs(energy);
+    EXPECT_NEAR(ours.kinetic, energies.at("kinetic_energy"), 1e-14 * size_);
+    for (std::size_t i = 0; i < ours.stored.size(); ++i)
+      EXPECT_NEAR(ours.stored[i], energies.at(balance_.stores()[i].energy), 1e-13 * size_);
+
+    const auto flows = independent_.flows(jet);
+    double power = 0, force = 0;
+    for (const auto& [name, flow] : flows)
+      power += std::abs(flow.energy), force += flow.momentum.norm();
+    const auto found = balance_.flows(jet);
+    for (std::size_t c = 0; c < found.size(); ++c) {
+      const std::string& name = balance_.channels()[c].name;
+      const auto expected = flows.find(name);
+      const Flow flow = expected == flows.end() ? Flow{} : expected->second;
+      EXPECT_NEAR(found[c].energy, flow.energy, 1e-12 * power) << name << jet.time;
+      EXPECT_LE((found[c].momentum - flow.momentum).norm(), 1e-12 * force)
+          << name << jet.time;
+      if (flow.energy != 0 || flow.momentum.norm() != 0) seen.insert(name);
+    }
+  }
+  std::size_t jumps = 0;
+  std::set<std::string> seen; // channels through which something went
+
+private:
+  IndependentBalance independent_;
+  Balance balance_;
+  JetState before_;
+  double size_ = 0; // of the energies [J]
+};
+
+/// Channels that were compared while they were open, and the number of events.
+std::pair<std::set<std::string>, std::size_t> compared(const Scene& scene, double end,
+                                                       double interval) {
+  const auto simulation = build_simulation(scene);
+  auto made = std::make_unique<Comparison>(scene, *simulation);
+  Comparison& comparison = *made;
+  simulation->add(std::make_unique<Watch>(interval, [&](const JetSnapshot& s) {
+    JetState jet = s.jet;
+    jet.time = s.time;
+    jet.y.assign(s.columns.flat.begin(), s.columns.flat.end());
+    comparison.compare(jet);
+  }));
+  simulation->add(std::move(made));
+  simulation->run_until(end);
+  return {comparison.seen, comparison.jumps};
+}
+
+TEST(Balance, of_chains_is_what_an_independent_computation_finds) {
+  for (const std::string kind : {"free", "held"})
+    for (const auto form : {SurfaceTensionForm::paper, SurfaceTensionForm::line}) {
+      GoldenChain golden(kind);
+      golden.scene.config.surface_tension->form = form;
+      golden.scene.config.gravity = GravityConfig{pvp::gravity};
+      const auto [seen, jumps] = compared(golden.scene, 2e-4, 2e-5);
+      EXPECT_EQ(seen.contains("held"), kind == "held");
+      EXPECT_EQ(seen.contains("surface"), form == SurfaceTensionForm::paper);
+      EXPECT_TRUE(seen.contains("dissipation") && seen.contains("gravity"));
+    }
+}
+
+TEST(Balance, of_jets_is_what_an_independent_computation_finds) {
+  for (const auto form : {SurfaceTensionForm::paper, SurfaceTensionForm::line}) {
+    Scene start = case_one("dormand-prince", 1e-6);
+    start.config.nozzle->velocity = 1; // counts in the work of the nozzle
+    start.config.nozzle->amplitude = 1e-4;
+    start.config.surface_tension->form = form;
+    const auto [seen, jumps] = compared(start, 1e-3, 7e-6);
+    for (const std::string name :
+         {"nozzle", "insertion", "field", "gravity", "dissipation"})
+      EXPECT_TRUE(seen.contains(name)) << name;
+    EXPECT_GT(jumps, 20U);
+
+    Scene landing = refined_case(0.8 * cm, 1e-3, 1e-4);
+    landing.config.surface_tension->form = form;
+    landing.config.integrator.landings = LandingSteps::located;
+    const auto [channels, events] = compared(landing, 13e-3, 1e-4);
+    EXPECT_TRUE(channels.contains("landing"));
+    EXPECT_GT(events, 200U);
+  }
 }
 
 // ---- jets -----------------------------------------------------------------------------------

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "ehdjet/budget/budget.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -19,11 +21,11 @@ using BudgetRow = std::map<std::string, double>;
 
 struct BudgetedRun {
   BudgetedRun(const Scene& scene, double interval)
-      : BudgetedRun(build_simulation(scene), build_budget(scene), interval) {}
-  BudgetedRun(std::unique_ptr<Simulation> moved, std::unique_ptr<Budget> made,
-              double interval)
-      : simulation(std::move(moved))
-      , budget(made.get()) {
+      : BudgetedRun(build_simulation(scene), interval) {}
+  BudgetedRun(std::unique_ptr<Simulation> moved, double interval)
+      : simulation(std::move(moved)) {
+    auto made = std::make_unique<Budget>(simulation->dynamics(), simulation->events());
+    budget = made.get();
     simulation->add(std::make_unique<Watch>(interval, [this](const JetSnapshot& s) {
       std::vector<double> values(budget->columns().size());
       budget->measure(s, values);
@@ -48,7 +50,7 @@ struct BudgetedRun {
     return largest;
   }
   std::unique_ptr<Simulation> simulation;
-  Budget* budget;
+  Budget* budget = nullptr;
   std::vector<BudgetRow> rows;
 };
 

@@ -51,7 +51,7 @@ public:
     chain_.mass = jet_.mass, chain_.charge = jet_.charge, chain_.volume = jet_.volume;
   }
 
-  void evaluate(double t, std::span<double> y, std::span<double> rate) override {
+  void evaluate(double t, std::span<const double> y, std::span<double> rate) override {
     const std::size_t n = jet_.y.size();
     dynamics_->evaluate(t, y.first(n), rate.first(n));
     std::ranges::copy(y.first(n), chain_.flat.begin());

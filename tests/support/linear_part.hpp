@@ -21,7 +21,7 @@ public:
       : f_(std::move(f))
       , jacobian_(std::move(j))
       , dfdt_(std::move(dfdt)) {}
-  void evaluate(double t, std::span<double> y, std::span<double> rate) override {
+  void evaluate(double t, std::span<const double> y, std::span<double> rate) override {
     ++evaluations;
     f_(t, y, rate);
   }

@@ -22,7 +22,7 @@ public:
   using Rhs = std::function<void(double, std::span<const double>, std::span<double>)>;
   explicit FunctionSystem(Rhs f)
       : f_(std::move(f)) {}
-  void evaluate(double t, std::span<double> y, std::span<double> rate) override {
+  void evaluate(double t, std::span<const double> y, std::span<double> rate) override {
     ++evaluations;
     f_(t, y, rate);
   }

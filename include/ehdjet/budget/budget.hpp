@@ -1,12 +1,11 @@
 #pragma once
 
-#include "ehdjet/budget/jet_balance.hpp"
+#include "ehdjet/budget/balance.hpp"
 #include "ehdjet/core/compensated_sum.hpp"
 #include "ehdjet/events/dense_step.hpp"
 #include "ehdjet/events/event.hpp"
 #include "ehdjet/simulation/observer.hpp"
 
-#include <array>
 #include <memory>
 #include <optional>
 #include <span>
@@ -21,15 +20,15 @@ namespace ehdjet {
 ///     residual = E(t) - E(0) - sum over channels of the integrals of their flows and their jumps
 ///
 /// Flows are integrated by Gauss-Legendre quadrature over the dense output of each step, jumps
-/// are energies after less before each event. Neither is made of the balance, so the residual
-/// shows every force that does not fit its energy, up to the errors of the steps and of the
-/// Coulomb solver.
+/// are energies after less before each event. The residual shows every force that does not fit
+/// its energy, up to the errors of the steps and of the Coulomb solver.
 ///
 /// The jet is the same with or without it, bit for bit. Does not survive a change of the jet
 /// other than by the simulation it is added to.
 class Budget final : public StepObserver, public Accounts {
 public:
-  explicit Budget(BudgetTerms terms);
+  /// Of a simulation with these equations of motion and events; both outlive the budget.
+  Budget(const JetDynamics& dynamics, std::span<const std::unique_ptr<Event>> events);
 
   void begin_step(const DenseStep& step,
                   std::span<const std::unique_ptr<Event>> events) override;
@@ -46,10 +45,6 @@ private:
     void add(const Flow& flow, double factor);
     [[nodiscard]] Vec3 momentum() const { return {x, y, z}; }
   };
-  [[nodiscard]] Sum& sum(Channel c) { return sums_[static_cast<std::size_t>(c)]; }
-  [[nodiscard]] const Sum& sum(Channel c) const {
-    return sums_[static_cast<std::size_t>(c)];
-  }
 
   void advance(double t, double theta);
   void integrate(double theta);
@@ -58,10 +53,10 @@ private:
   template <class Add>
   void list(const JetEnergies& now, const Add& add) const;
 
-  JetBalance balance_;
+  Balance balance_;
   std::vector<Column> columns_;
   std::optional<JetEnergies> start_;
-  std::array<Sum, channels> sums_;
+  std::vector<Sum> sums_; // of the channels
 
   const DenseStep* step_ = nullptr; // in progress
   std::span<const std::unique_ptr<Event>> events_;

@@ -19,9 +19,9 @@ namespace ehdjet {
 ///     s = (b_s + eta turning . D b_r) / (1 + eta/tau)
 ///     p = (eta stretching + eta^2 turning) / (1 + eta/tau)
 ///
-/// leaves a block-tridiagonal 3x3 system in v, with A = eta^2 pull + eta tension p^T,
+/// leaves a block-tridiagonal 3x3 system in v, with A = eta^2 pull + eta tension p^T + eta damping,
 ///
-///     m_k v_k - A_(k+1) D_(k+1) v + A_k D_k v
+///     (m_k + eta drag_k) v_k - A_(k+1) D_(k+1) v + A_k D_k v
 ///         = m_k b_v + eta (pull_(k+1) D_(k+1) b_r + tension_(k+1) s_(k+1) - the same of link k)
 ///
 /// (A and pull as on the upper end in link k+1, on the lower end in link k), solved by block
@@ -53,6 +53,8 @@ public:
     double tension = 0; ///< K = |pull|
   };
   [[nodiscard]] Rates squared_rates(std::span<const double> inverse_mass) const;
+  /// The fastest decay by damping, a bound of the same kind, or by drag [1/s].
+  [[nodiscard]] double damping_rate(std::span<const double> inverse_mass) const;
 
 private:
   [[nodiscard]] std::size_t upstream(std::size_t k) const {

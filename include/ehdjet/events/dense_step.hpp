@@ -31,8 +31,9 @@ public:
   [[nodiscard]] Vec3 velocity(double theta, std::size_t bead) const {
     return vector(theta, 3, bead);
   }
-  [[nodiscard]] double stress(double theta, std::size_t bead) const {
-    return component(theta, JetColumns<double>::kinematic_columns * jet.beads() + bead);
+  /// Any column of the state vector.
+  [[nodiscard]] double value(double theta, std::size_t column, std::size_t bead) const {
+    return component(theta, column * jet.beads() + bead);
   }
   [[nodiscard]] double x(double theta, std::size_t bead) const {
     return component(theta, bead);

@@ -2,9 +2,11 @@
 
 #include "ehdjet/core/checkpoint.hpp"
 #include "ehdjet/events/dense_step.hpp"
+#include "ehdjet/jet/exchange.hpp"
 #include "ehdjet/jet/ledger.hpp"
 
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -25,6 +27,10 @@ class Event {
 public:
   virtual ~Event() = default;
   [[nodiscard]] virtual std::string_view name() const = 0;
+  /// What the event changes at once has this channel in a budget (model 8).
+  [[nodiscard]] virtual Channel channel() const {
+    return Channel::named(std::string(name()));
+  }
 
   /// Whether the state calls for the event now: at the end of a step (events = "step-end"), or
   /// right after another event at the same instant.

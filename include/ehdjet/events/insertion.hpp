@@ -1,24 +1,14 @@
 #pragma once
 
-#include "ehdjet/events/event.hpp"
+#include "ehdjet/events/inflow_rule.hpp"
 #include "ehdjet/jet/nozzle.hpp"
 
 #include <cstdint>
+#include <memory>
 #include <optional>
+#include <vector>
 
 namespace ehdjet {
-
-/// What every bead that is born at the nozzle carries (model 1):
-///
-///     V0 = pi a0^2 l_step,   m0 = rho V0,   q0 = rho_q V0
-struct NewBead {
-  double volume = 0; ///< V0 [m^3]
-  double mass = 0;   ///< m0 [kg]
-  double charge = 0; ///< q0 [C]
-
-  static NewBead from(double radius, double link_length, double density,
-                      double charge_density);
-};
 
 /// Every k-th bead differs: an impurity that makes the jet varicose (model 4).
 struct Varicosity {
@@ -32,17 +22,50 @@ enum class ReleaseVelocity {
   nozzle ///< (v_s, 0, 0)
 };
 
+/// The inflow of the paper: fluid leaves the nozzle as fast as the forces pull it out. A bead is
+/// born as an embryo between the nozzle and bead 1, which is led until it is released (model 4).
+class EmbryoInflow final : public InflowRule {
+public:
+  struct Rule {
+    double link_length = 0;                    ///< l_step [m]
+    LinkContent born;                          ///< what a new bead carries
+    std::optional<Varicosity> varicosity = {}; ///< none: all beads alike
+    ReleaseVelocity release = ReleaseVelocity::half;
+  };
+  EmbryoInflow(const Nozzle& nozzle, const Rule& rule)
+      : InflowRule(nozzle)
+      , rule_(rule)
+      , embryo_{.link_length = rule.link_length} {}
+
+  [[nodiscard]] const Rule& rule() const { return rule_; }
+  [[nodiscard]] const Embryo& embryo() const { return embryo_; }
+  [[nodiscard]] JetState start(std::size_t integrated_columns) const override;
+  void prescribe(double t, bool has_led_bead, JetColumns<double> y) const override;
+  [[nodiscard]] bool changes_content(bool has_led_bead) const override {
+    return has_led_bead;
+  }
+  [[nodiscard]] LinkContent acting(const LinkContent& full, double t,
+                                   ConstVec3View r) const override;
+  [[nodiscard]] double charging(const LinkContent& full,
+                                JetColumns<const double> y) const override;
+  [[nodiscard]] Vec3 led_velocity(JetColumns<const double> y) const override;
+  /// Release, then insertion: the order in which they are applied at one instant.
+  [[nodiscard]] std::vector<std::unique_ptr<Event>> events() const override;
+
+private:
+  Rule rule_;
+  Embryo embryo_;
+};
+
 /// An embryo is created between nozzle and bead 1 when |r_1 - r_0| reaches 1.5 l_step (model 4.1).
 /// Nothing jumps: its charge grows from zero and it carries no stress.
 class Insertion final : public Event {
 public:
-  Insertion(const Nozzle& nozzle, const Embryo& embryo, const NewBead& born,
-            std::optional<Varicosity> varicosity = {})
-      : nozzle_(nozzle)
-      , embryo_(embryo)
-      , born_(born)
-      , varicosity_(varicosity) {}
+  /// `inflow` outlives the event.
+  explicit Insertion(const EmbryoInflow& inflow)
+      : inflow_(inflow) {}
   [[nodiscard]] std::string_view name() const override { return "insertion"; }
+  [[nodiscard]] Channel channel() const override;
   [[nodiscard]] bool due(const JetState& jet) const override;
   [[nodiscard]] std::optional<double> locate(const DenseStep& step) override;
   [[nodiscard]] std::optional<double> predict(const DenseStep& step) const override;
@@ -53,21 +76,18 @@ private:
   [[nodiscard]] double excess(const DenseStep& step,
                               double theta) const; // [m], >= 0: happens
 
-  Nozzle nozzle_;
-  Embryo embryo_;
-  NewBead born_;
-  std::optional<Varicosity> varicosity_;
+  const EmbryoInflow& inflow_;
 };
 
 /// The embryo becomes a free bead when |r_2 - r_0| reaches 2 l_step: stress 0, full charge. Bead 2
 /// keeps its stress and volume while its link shrinks from 2 l_step to l_step (model 4.2).
 class Release final : public Event {
 public:
-  Release(const Nozzle& nozzle, const Embryo& embryo, ReleaseVelocity velocity)
-      : nozzle_(nozzle)
-      , embryo_(embryo)
-      , velocity_(velocity) {}
+  /// `inflow` outlives the event.
+  explicit Release(const EmbryoInflow& inflow)
+      : inflow_(inflow) {}
   [[nodiscard]] std::string_view name() const override { return "release"; }
+  [[nodiscard]] Channel channel() const override;
   [[nodiscard]] bool due(const JetState& jet) const override;
   [[nodiscard]] std::optional<double> locate(const DenseStep& step) override;
   [[nodiscard]] std::optional<double> predict(const DenseStep& step) const override;
@@ -77,9 +97,7 @@ public:
 private:
   [[nodiscard]] double excess(const DenseStep& step, double theta) const;
 
-  Nozzle nozzle_;
-  Embryo embryo_;
-  ReleaseVelocity velocity_;
+  const EmbryoInflow& inflow_;
 };
 
 } // namespace ehdjet

@@ -27,6 +27,7 @@ public:
       , first_bead_(first_bead)
       , may_pass_(may_pass) {}
   [[nodiscard]] std::string_view name() const override { return "landing"; }
+  [[nodiscard]] Channel channel() const override;
   [[nodiscard]] bool due(const JetState& jet) const override;
   [[nodiscard]] std::optional<double> locate(const DenseStep& step) override;
   void overtaken(double time) override;

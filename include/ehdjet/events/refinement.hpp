@@ -13,17 +13,13 @@ namespace ehdjet {
 /// become too long, and joins links that are needlessly short if the rule says so (model 7).
 class Refinement final : public Event {
 public:
-  /// What is needed to record the change of energy.
-  struct Recording {
-    double elastic_modulus = 0; ///< G [Pa]; 0: there is no stress
-    /// [J]; may be empty: the Coulomb energy costs as much as a force evaluation
-    std::function<double(const JetState&)> coulomb_energy;
-  };
+  /// Sums over the beads of a jet, for the record of what a refinement changes.
+  using Totals = std::function<JetTotals(const JetState&)>;
 
-  /// `interval`: t_ref [s]. Without `recording` nothing but the mesh is computed.
+  /// `interval`: t_ref [s]. Without `totals` nothing is recorded.
   /// `at_step_ends`: happens at the end of the step that contains the multiple of t_ref.
-  Refinement(const RefinementRule& rule, double interval,
-             std::optional<Recording> recording = {}, bool at_step_ends = false);
+  Refinement(const RefinementRule& rule, double interval, Totals totals = {},
+             bool at_step_ends = false);
   [[nodiscard]] std::string_view name() const override { return "refinement"; }
   [[nodiscard]] bool due(const JetState& jet) const override;
   /// A multiple of t_ref ends a step only if there is something to do.
@@ -44,7 +40,7 @@ private:
   Schedule schedule_;
   double located_ = 0; // the multiple that ends the step [s]
   JetState probe_;     // the jet inside a step
-  std::optional<Recording> recording_;
+  Totals totals_;
   bool at_step_ends_;
 };
 

@@ -4,6 +4,7 @@
 #include "ehdjet/forces/force_term.hpp"
 
 #include <memory>
+#include <vector>
 
 namespace ehdjet {
 
@@ -13,18 +14,15 @@ class CoulombForce final : public ForceTerm {
 public:
   explicit CoulombForce(std::unique_ptr<CoulombSolver> solver)
       : solver_(std::move(solver)) {}
-  void add_force(const Stage& stage, Vec3View force) override {
-    solver_->add_force(stage.columns.position(), stage.charge, force);
-    coincident_pairs_ += solver_->coincident_pairs();
-  }
+  void add_force(const Stage& stage, Vec3View force) override;
   [[nodiscard]] std::string_view name() const override { return "Coulomb"; }
-  [[nodiscard]] std::uint64_t coincident_pairs() const override {
-    return coincident_pairs_;
-  }
-  [[nodiscard]] std::string method() const override { return solver_->description(); }
-  [[nodiscard]] std::optional<CoulombChecks> checks() const override {
-    return solver_->checks();
-  }
+  [[nodiscard]] TermAccount account() const override;
+  [[nodiscard]] double energy(const Stage& stage) override; ///< of all pairs
+  [[nodiscard]] double energy_change(const Stage& before, const Stage& after) override;
+  [[nodiscard]] double potential(const Stage& stage, std::size_t bead) override;
+  void add_force_on(std::span<const std::size_t> beads, const Stage& stage,
+                    Vec3View force) override;
+  [[nodiscard]] std::optional<TermReport> report() const override;
   void archive(const Archive& a) override {
     a("coincident_pairs", coincident_pairs_);
     solver_->archive(a.part("solver"));

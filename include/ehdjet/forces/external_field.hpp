@@ -13,6 +13,9 @@ public:
       : strength_(strength) {}
   void add_force(const Stage& stage, Vec3View force) override;
   [[nodiscard]] std::string_view name() const override { return "external field"; }
+  [[nodiscard]] TermAccount account() const override;
+  [[nodiscard]] double energy(const Stage& stage) override; ///< - sum q E x
+  [[nodiscard]] double potential(const Stage& stage, std::size_t bead) override;
 
 private:
   double strength_;

@@ -2,10 +2,11 @@
 
 #include "ehdjet/core/checkpoint.hpp"
 #include "ehdjet/core/columns.hpp"
-#include "ehdjet/coulomb/solver.hpp"
 #include "ehdjet/forces/link_derivatives.hpp"
+#include "ehdjet/jet/exchange.hpp"
 #include "ehdjet/jet/stage.hpp"
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -14,25 +15,72 @@
 
 namespace ehdjet {
 
+/// What a term has to tell about its work so far.
+struct TermReport {
+  std::string method;                 ///< how the force is computed, for people to read
+  std::uint64_t coincident_pairs = 0; ///< pairs of beads at zero distance that were skipped
+  /// Comparisons with an exact method; none if nobody compares.
+  struct Checks {
+    double last_error = 0;        ///< relative
+    std::uint64_t violations = 0; ///< comparisons that found more than the tolerance
+  };
+  std::optional<Checks> checks = {};
+};
+
+/// How a term enters a budget of energy and momentum (model 8).
+struct TermAccount {
+  std::string energy,
+      energy_meaning; ///< column of its stored energy; no name: it stores none
+  /// Where the rest goes. Without stored energy that is the work of the force. Momentum columns
+  /// mean that the momentum comes from outside; without them the forces between the beads sum to
+  /// zero.
+  Channel channel = {};
+};
+
 /// One additive contribution to the equations of motion (model 2). A term that a scene does not
 /// name is never constructed; there is no null term and no "enabled" flag. One virtual call per
 /// term and evaluation: the loop over beads is inside the term.
+///
+/// A term also accounts for itself: what it stores as energy and what it exchanges with the outside.
+/// As long as it overrides nothing of that, the work and the impulse of its force have columns under
+/// its own name, and a budget closes.
 class ForceTerm {
 public:
   virtual ~ForceTerm() = default;
-  /// force (beads) += ... [N]. Entries of beads that do not move (nozzle, embryo, landed) may
-  /// hold anything: their rates are set to zero afterwards.
-  virtual void add_force(const Stage& stage, Vec3View force) = 0;
-  /// links += what the force, and a stress rate, answer to a change of a link, for implicit steps.
-  /// Only terms that may be stiff, which are all local, have something to add.
-  virtual void add_derivatives(const Stage& /*stage*/, LinkDerivatives& /*links*/) {}
   [[nodiscard]] virtual std::string_view name() const = 0;
-  /// Pairs of beads at zero distance that were skipped so far, all evaluations together.
-  [[nodiscard]] virtual std::uint64_t coincident_pairs() const { return 0; }
-  /// How the term is computed, if there is something to tell.
-  [[nodiscard]] virtual std::string method() const { return {}; }
-  /// Comparisons with an exact method, if there are such.
-  [[nodiscard]] virtual std::optional<CoulombChecks> checks() const { return {}; }
+
+  /// force (beads) += ... [N], on the targets of the stage. The force on a target that does not move
+  /// freely (nozzle, embryo, landed) is what its support has to bear; rates are set to zero
+  /// afterwards. Entries of beads that are no targets may get anything.
+  virtual void add_force(const Stage& stage, Vec3View force) = 0;
+  /// derivatives += what the force, and a stress rate, answer to a change of a link or of a bead's
+  /// velocity, for implicit steps. Only terms that may be stiff, which are all local, have
+  /// something to add.
+  virtual void add_derivatives(const Stage& /*stage*/, LinkDerivatives& /*derivatives*/) {}
+
+  [[nodiscard]] virtual TermAccount account() const;
+  /// Stored energy [J]; -dU/dr is the force.
+  [[nodiscard]] virtual double energy(const Stage& /*stage*/) { return 0; }
+  /// Stored energy after an event less the one before it [J].
+  [[nodiscard]] virtual double energy_change(const Stage& before, const Stage& after) {
+    return energy(after) - energy(before);
+  }
+  /// dU/dq: what it costs to bring charge to a bead [V].
+  [[nodiscard]] virtual double potential(const Stage& /*stage*/, std::size_t /*bead*/) {
+    return 0;
+  }
+  /// force (beads) += ... on those beads, which do not move freely. Entries of others may get
+  /// anything. For terms that need less than `add_force` for that.
+  virtual void add_force_on(std::span<const std::size_t> /*beads*/, const Stage& stage,
+                            Vec3View force) {
+    add_force(stage, force);
+  }
+  /// What the term brings in per second besides the work of its force on beads that move: what it
+  /// dissipates, what it costs to feed it.
+  virtual void add_power(const Stage& /*stage*/, Exchange& /*exchange*/) {}
+
+  /// None if there is nothing to tell.
+  [[nodiscard]] virtual std::optional<TermReport> report() const { return {}; }
   /// What the term keeps from one evaluation to the next.
   virtual void archive(const Archive& /*a*/) {}
 };
@@ -40,7 +88,7 @@ public:
 /// A force term with an internal variable per link, integrated with the jet.
 class Rheology : public ForceTerm {
 public:
-  /// rate (beads) = d sigma/dt [Pa/s]
+  /// rate (beads) = d sigma/dt [Pa/s], at the targets of the stage
   virtual void stress_rate(const Stage& stage, std::span<double> rate) = 0;
 };
 

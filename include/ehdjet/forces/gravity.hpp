@@ -13,6 +13,8 @@ public:
       : acceleration_(acceleration) {}
   void add_force(const Stage& stage, Vec3View force) override;
   [[nodiscard]] std::string_view name() const override { return "gravity"; }
+  [[nodiscard]] TermAccount account() const override;
+  [[nodiscard]] double energy(const Stage& stage) override; ///< - sum m g x
 
 private:
   double acceleration_;

@@ -22,10 +22,13 @@ public:
   void stress_rate(const Stage& stage, std::span<double> rate) override;
   void add_derivatives(const Stage& stage, LinkDerivatives& links) override;
   [[nodiscard]] std::string_view name() const override { return "viscoelasticity"; }
+  [[nodiscard]] TermAccount account() const override;
+  [[nodiscard]] double energy(const Stage& stage) override; ///< sum V sigma^2/(2 G)
+  void add_power(const Stage& stage, Exchange& exchange) override;
 
 private:
   double elastic_modulus_, relaxation_rate_;
-  std::vector<double> tension_per_length_; // V sigma / l^2 [N/m], zero beyond both ends
+  std::vector<double> tension_per_length_; // V sigma / l^2 [N/m]
 };
 
 } // namespace ehdjet

@@ -20,6 +20,7 @@ public:
   void add_force(const Stage& stage, Vec3View force) override;
   void add_derivatives(const Stage& stage, LinkDerivatives& links) override;
   [[nodiscard]] std::string_view name() const override { return "surface tension (paper)"; }
+  [[nodiscard]] TermAccount account() const override;
 
 private:
   double coefficient_;
@@ -36,6 +37,8 @@ public:
   void add_force(const Stage& stage, Vec3View force) override;
   void add_derivatives(const Stage& stage, LinkDerivatives& links) override;
   [[nodiscard]] std::string_view name() const override { return "surface tension (line)"; }
+  [[nodiscard]] TermAccount account() const override;
+  [[nodiscard]] double energy(const Stage& stage) override; ///< sum 2 alpha sqrt(pi V l)
 
 private:
   double coefficient_;

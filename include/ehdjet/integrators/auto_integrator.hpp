@@ -24,7 +24,8 @@ public:
   [[nodiscard]] int order() const override { return active_->order(); }
   [[nodiscard]] int error_order() const override { return active_->error_order(); }
 
-  StepOutcome attempt(OdeSystem& system, double t, double h, std::span<double> y) override;
+  StepOutcome attempt(OdeSystem& system, double t, double h,
+                      std::span<const double> y) override;
   [[nodiscard]] std::span<const double> end_state() const override {
     return active_->end_state();
   }
@@ -40,7 +41,7 @@ public:
   void commit(std::vector<double>& y) override;
   void restart() override;
   void archive(const Archive& a) override;
-  double initial_step(OdeSystem& system, double t, std::span<double> y) override;
+  double initial_step(OdeSystem& system, double t, std::span<const double> y) override;
 
 private:
   void choose(OdeSystem& system, double t, double h, std::span<const double> y);

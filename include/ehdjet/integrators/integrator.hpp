@@ -32,9 +32,10 @@ public:
   /// The last attempt's error estimate falls with h to this power; 0 if there is none.
   [[nodiscard]] virtual int error_order() const = 0;
 
-  /// Tries y(t) -> y(t + h). `y` must stay where it is until the step is committed.
+  /// Tries y(t) -> y(t + h). `y` must stay where it is until the step is committed; its prescribed
+  /// components have their values at t.
   virtual StepOutcome attempt(OdeSystem& system, double t, double h,
-                              std::span<double> y) = 0;
+                              std::span<const double> y) = 0;
   /// The state at t + h of the last attempt.
   [[nodiscard]] virtual std::span<const double> end_state() const = 0;
   /// Component where the last attempt's error was largest or not a number.
@@ -55,7 +56,7 @@ public:
 
   /// A first step that changes no component by more than a hundredth of its error scale's size
   /// (after Hairer, Norsett & Wanner, II.4).
-  virtual double initial_step(OdeSystem& system, double t, std::span<double> y) = 0;
+  virtual double initial_step(OdeSystem& system, double t, std::span<const double> y) = 0;
 };
 
 } // namespace ehdjet

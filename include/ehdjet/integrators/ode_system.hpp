@@ -27,11 +27,14 @@ public:
 };
 
 /// dy/dt = f(t, y). Components that the system prescribes as functions of time (the nozzle, an
-/// embryo) have rate zero, and `evaluate` overwrites them in `y` with their values at t.
+/// embryo) have rate zero.
 class OdeSystem {
 public:
   virtual ~OdeSystem() = default;
-  virtual void evaluate(double t, std::span<double> y, std::span<double> rate) = 0;
+  /// Overwrites the prescribed components of y with their values at t. An integrator calls this
+  /// for each state that it makes, before it evaluates f there.
+  virtual void prescribe(double /*t*/, std::span<double> /*y*/) const {}
+  virtual void evaluate(double t, std::span<const double> y, std::span<double> rate) = 0;
   /// For implicit methods; null if the system has none to offer.
   [[nodiscard]] virtual StiffPart* stiff_part() { return nullptr; }
 };

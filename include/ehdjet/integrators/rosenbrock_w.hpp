@@ -26,18 +26,19 @@ public:
   [[nodiscard]] int order() const override { return method_->order; }
   [[nodiscard]] int error_order() const override { return method_->error_order; }
 
-  StepOutcome attempt(OdeSystem& system, double t, double h, std::span<double> y) override;
+  StepOutcome attempt(OdeSystem& system, double t, double h,
+                      std::span<const double> y) override;
   [[nodiscard]] std::span<const double> end_state() const override { return y1_; }
   [[nodiscard]] std::size_t worst_component() const override;
   void prepare_dense_output(OdeSystem& /*system*/) override {}
   void dense_output(double theta, std::size_t first, std::span<double> out) const override;
   void commit(std::vector<double>& y) override;
   void restart() override { start_known_ = false; }
-  double initial_step(OdeSystem& system, double t, std::span<double> y) override;
+  double initial_step(OdeSystem& system, double t, std::span<const double> y) override;
 
 private:
   void resize(std::size_t n);
-  void prepare_start(OdeSystem& system, double t, std::span<double> y);
+  void prepare_start(OdeSystem& system, double t, std::span<const double> y);
 
   const RosenbrockTableau* method_;
   ErrorScale scale_;
@@ -47,7 +48,7 @@ private:
 
   std::vector<std::vector<double>> k_;
   std::vector<double> start_rate_, stage_, y1_, error_;
-  std::span<double> y0_;
+  std::span<const double> y0_;
   double h_ = 0;
   bool start_known_ = false; // rate and linearization at the start of the step
 };

@@ -18,6 +18,7 @@ struct JetColumns {
   std::span<T> flat;
   std::size_t beads = 0;
 
+  [[nodiscard]] std::size_t count() const { return flat.size() / beads; }
   [[nodiscard]] std::span<T> column(std::size_t c) const {
     return flat.subspan(c * beads, beads);
   }

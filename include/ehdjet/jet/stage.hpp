@@ -5,6 +5,7 @@
 #include "ehdjet/jet/links.hpp"
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 
 namespace ehdjet {
@@ -15,18 +16,23 @@ class Stage {
 public:
   double time = 0;                  ///< [s]
   JetColumns<const double> columns; ///< positions, velocities, stresses at this stage
-  std::span<const double> mass;     ///< [kg]
-  std::span<const double> charge;   ///< [C], an embryo's as it acts at this stage
-  std::span<const double> volume;   ///< [m^3]
-  std::size_t first = 1;            ///< first bead below bead 0 with local forces
+  std::span<const double> mass; ///< [kg], like charge and volume as they act at this stage
+  std::span<const double> charge; ///< [C]
+  std::span<const double> volume; ///< [m^3]
+  std::size_t first = 1;          ///< first bead below bead 0 with local forces
   std::span<const LandedBead> landed;
+  std::span<const std::uint8_t> moves; ///< 1: the bead moves freely
+  /// Beads whose forces are asked for, and those whose charges act on them: all, unless only a part
+  /// of the right-hand side is evaluated.
+  BeadRange targets, sources;
 
-  /// Call after the positions have changed.
+  /// Call after the positions or the targets have changed.
   void invalidate() { links_ready_ = false; }
 
   [[nodiscard]] std::size_t beads() const { return mass.size(); }
+  /// Geometry of the links at the targets: of those that end at a target and of the next one.
   [[nodiscard]] const Links& links() const {
-    if (!links_ready_) links_.compute(columns.position(), first);
+    if (!links_ready_) links_.compute(columns.position(), first, targets);
     links_ready_ = true;
     return links_;
   }

@@ -1,6 +1,5 @@
 #pragma once
 
-#include "ehdjet/budget/budget.hpp"
 #include "ehdjet/coulomb/solver_options.hpp"
 #include "ehdjet/scene/config.hpp"
 #include "ehdjet/scene/read_scene.hpp"
@@ -19,10 +18,6 @@ std::unique_ptr<Simulation> build_simulation(const Scene& scene);
 
 /// The right-hand side alone.
 std::unique_ptr<JetDynamics> build_dynamics(const Scene& scene);
-
-/// Energy and momentum of this scene's jet, for a simulation and for whoever writes them. Add it
-/// to the simulation before it runs.
-std::unique_ptr<Budget> build_budget(const Scene& scene);
 
 /// What a scene asks of the Coulomb solver.
 SolverOptions solver_options(const CoulombConfig& config,

@@ -12,6 +12,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace ehdjet {
@@ -74,6 +75,7 @@ public:
   [[nodiscard]] const Ledger& ledger() const { return ledger_; }
   [[nodiscard]] const RunStatistics& statistics() const { return statistics_; }
   [[nodiscard]] const JetDynamics& dynamics() const { return *dynamics_; }
+  [[nodiscard]] std::span<const std::unique_ptr<Event>> events() const { return events_; }
 
 private:
   struct FoundEvent {

@@ -1,0 +1,76 @@
+#pragma once
+
+#include "ehdjet/jet/exchange.hpp"
+#include "ehdjet/jet/inflow.hpp"
+#include "ehdjet/jet/jet_state.hpp"
+#include "ehdjet/jet/stage.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace ehdjet {
+
+/// Beads of a given chain that are held in place.
+struct HeldEnds {
+  bool first = false, last = false;
+};
+
+/// What keeps the beads of a scene from moving freely, besides the collector.
+struct Constraints {
+  const Inflow* inflow = nullptr; ///< null: bead 0 is an ordinary bead
+  HeldEnds ends;
+};
+
+/// A chain as force terms see it: which beads move freely, what they carry as they act, and a
+/// `Stage` for any of its states. The equations of motion have one, a budget has its own.
+class ActingChain {
+public:
+  void constrain(const Constraints& constraints) { constraints_ = constraints; }
+  [[nodiscard]] const Constraints& constraints() const { return constraints_; }
+
+  /// Takes over a chain; its state may be another one afterwards. With an `absorbing_plane` [m]
+  /// beads beyond it count as absorbed (model 5).
+  void bind(const JetState& jet, std::optional<double> absorbing_plane = {});
+
+  /// The stage of state y at time t, valid until the next call. Prescribed beads stand in their
+  /// places in y. `targets` and `sources`: see Stage.
+  const Stage& at(double t, std::span<const double> y, BeadRange targets = {},
+                  BeadRange sources = {});
+  [[nodiscard]] const Stage& stage() const { return stage_; }
+
+  [[nodiscard]] std::size_t beads() const { return mass_.size(); }
+  [[nodiscard]] bool has_led_bead() const { return has_led_bead_; }
+  [[nodiscard]] std::span<const double> mass() const { return mass_; }
+  [[nodiscard]] std::span<const double> inverse_mass() const { return inverse_mass_; }
+  /// Beads that do not move freely, and those of them whose link keeps its stress.
+  [[nodiscard]] std::span<const std::size_t> held() const { return held_; }
+  [[nodiscard]] std::span<const std::size_t> frozen() const { return frozen_; }
+  [[nodiscard]] Support support(std::size_t bead) const;
+  [[nodiscard]] const LinkContent& full_content() const { return full_; }
+
+  /// Beads that the last stage has absorbed, from the end of the chain on: the first of them in the
+  /// chain is the last entry. Empty if none has passed the plane since the step began.
+  [[nodiscard]] std::span<const std::size_t> absorbed() const { return absorbed_; }
+
+private:
+  void absorb(std::span<const double> y);
+
+  Constraints constraints_;
+  Stage stage_;
+  std::vector<double> mass_, charge_, volume_, inverse_mass_; // as they act
+  std::vector<std::uint8_t> moves_;
+  std::vector<LandedBead> landed_;
+  std::vector<std::size_t> held_, frozen_;
+  bool has_led_bead_ = false;
+  LinkContent full_; // of bead 1, while an inflow changes how it acts
+  bool changes_content_ = false;
+  std::optional<double> absorbing_plane_; // [m]
+  std::vector<std::size_t> absorbed_;
+  std::vector<double> charge_before_; // of the absorbed beads
+  std::vector<double> state_;         // with absorbed beads where they crossed the plane
+};
+
+} // namespace ehdjet

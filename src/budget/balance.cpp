@@ -1,0 +1,201 @@
+#include "ehdjet/budget/balance.hpp"
+
+#include "ehdjet/core/compensated_sum.hpp"
+#include "ehdjet/core/error.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+namespace ehdjet {
+namespace {
+
+constexpr std::size_t none = static_cast<std::size_t>(-1);
+
+std::size_t index_of(std::span<const Channel> channels, const std::string& name) {
+  const auto found = std::ranges::find(channels, name, &Channel::name);
+  return found == channels.end() ? none
+                                 : static_cast<std::size_t>(found - channels.begin());
+}
+
+const Channel nozzle{.name = "nozzle",
+                     .energy = "nozzle_work",
+                     .energy_meaning =
+                         "work so far of moving the nozzle and of feeding its link",
+                     .momentum = "nozzle_impulse",
+                     .momentum_meaning = "so far, of the nozzle on the jet"};
+const Channel held{.name = "held",
+                   .energy = "held_work",
+                   .energy_meaning = "work so far of the held ends",
+                   .momentum = "held_impulse",
+                   .momentum_meaning = "so far, of the held ends on the chain"};
+
+} // namespace
+
+double JetEnergies::total() const {
+  return std::accumulate(stored.begin(), stored.end(), kinetic);
+}
+
+Balance::Balance(const JetDynamics& dynamics,
+                 std::span<const std::unique_ptr<Event>> events)
+    : dynamics_(dynamics) {
+  const Constraints& constraints = dynamics.constraints();
+  chain_.constrain(constraints), chain_before_.constrain(constraints);
+  for (const auto& term : dynamics.terms()) {
+    accounts_.push_back(term->account());
+    const TermAccount& account = accounts_.back();
+    if (!account.energy.empty()) stores_.push_back(account);
+    if (!account.channel.name.empty()) add_channel(account.channel);
+    own_.push_back(index_of(channels_, account.channel.name));
+  }
+  if (constraints.inflow != nullptr) add_channel(nozzle);
+  if (constraints.ends.first || constraints.ends.last) add_channel(held);
+  for (const auto& event : events) add_channel(event->channel());
+  support_channel_.fill(none);
+  const auto support = [&](Support s, const char* name) {
+    support_channel_[static_cast<std::size_t>(s)] = index_of(channels_, name);
+  };
+  support(Support::inflow, "nozzle"), support(Support::insertion, "insertion");
+  support(Support::collector, "landing"), support(Support::clamp, "held");
+  flows_.resize(channels_.size());
+}
+
+void Balance::add_channel(const Channel& channel) {
+  if (index_of(channels_, channel.name) == none) channels_.push_back(channel);
+}
+
+std::size_t Balance::channel(const std::string& name) const {
+  const std::size_t index = index_of(channels_, name);
+  EHDJET_EXPECTS(index != none);
+  return index;
+}
+
+void Balance::prescribe(JetState& jet) const {
+  if (const Inflow* inflow = chain_.constraints().inflow)
+    inflow->prescribe(jet.time, jet.has_embryo, jet.columns());
+}
+
+const Stage& Balance::look_at(ActingChain& chain, const JetState& jet) {
+  chain.bind(jet);
+  return chain.at(jet.time, jet.y);
+}
+
+JetEnergies Balance::motion_of(const ActingChain& chain) {
+  JetEnergies e;
+  const Stage& stage = chain.stage();
+  const auto v = stage.columns.velocity();
+  for (std::size_t k = 0; k < stage.beads(); ++k) {
+    if (stage.moves[k] == 0) continue;
+    e.momentum += stage.mass[k] * v[k];
+    e.momentum_size += stage.mass[k] * v[k].norm();
+    e.kinetic += stage.mass[k] * v[k].squaredNorm() / 2;
+  }
+  return e;
+}
+
+JetEnergies Balance::energies(const JetState& jet) {
+  const Stage& stage = look_at(chain_, jet);
+  JetEnergies e = motion_of(chain_);
+  const auto& terms = dynamics_.terms();
+  for (std::size_t i = 0; i < terms.size(); ++i)
+    if (!accounts_[i].energy.empty()) e.stored.push_back(terms[i]->energy(stage));
+  return e;
+}
+
+Flow Balance::jump(const JetState& before, const JetState& after) {
+  const Stage& then = look_at(chain_before_, before);
+  const Stage& now = look_at(chain_, after);
+  const JetEnergies a = motion_of(chain_before_), b = motion_of(chain_);
+  Flow flow{.energy = b.kinetic - a.kinetic, .momentum = b.momentum - a.momentum};
+  for (const auto& term : dynamics_.terms()) flow.energy += term->energy_change(then, now);
+  return flow;
+}
+
+std::span<const Flow> Balance::flows(const JetState& jet) {
+  const Stage& stage = look_at(chain_, jet);
+  const std::size_t n = stage.beads();
+  support_of_.resize(n);
+  for (std::size_t k = 0; k < n; ++k) support_of_[k] = chain_.support(k);
+  Exchange exchange{
+      .support_of = support_of_, .led_velocity = {}, .own = {}, .supported = {}};
+  for (Vec3& v : exchange.led_velocity) v.setZero();
+  const Inflow* inflow = chain_.constraints().inflow;
+  if (inflow != nullptr) {
+    exchange.led_velocity[0] = stage.columns.velocity()[0];
+    exchange.led_velocity[0].x() = 0; // the fluid flows through the nozzle, which stays
+  }
+  if (chain_.has_led_bead()) exchange.led_velocity[1] = inflow->led_velocity(stage.columns);
+  std::ranges::fill(flows_, Flow{});
+  const auto& terms = dynamics_.terms();
+  for (std::size_t i = 0; i < terms.size(); ++i) {
+    exchange.own = {};
+    add_flows(chain_, *terms[i], accounts_[i], exchange);
+    if (own_[i] == none) continue;
+    flows_[own_[i]].energy += exchange.own.energy;
+    flows_[own_[i]].momentum += exchange.own.momentum;
+  }
+  for (std::size_t s = 0; s < supports; ++s) {
+    if (support_channel_[s] == none) continue;
+    Flow& flow = flows_[support_channel_[s]];
+    flow.energy += exchange.supported[s].energy;
+    flow.momentum += exchange.supported[s].momentum;
+  }
+  return flows_;
+}
+
+// With the force f of a term and its energy U,
+//
+//     d/dt (kinetic energy + U) = sum of f.v over beads that move + dU/dt
+//                               = - sum of f.dr/dt over beads that are led + dU/dq_1 dq_1/dt
+//
+// plus what the term itself says it exchanges. Without energy the first sum is what it brings in.
+void Balance::add_flows(const ActingChain& chain, ForceTerm& term,
+                        const TermAccount& account, Exchange& exchange) {
+  const Stage& stage = chain.stage();
+  const std::size_t n = stage.beads();
+  const bool stores = !account.energy.empty(),
+             is_external = !account.channel.momentum.empty();
+  force_.assign(3 * n, 0.0);
+  const std::span<double> f(force_);
+  const Vec3View force{f.subspan(0, n), f.subspan(n, n), f.subspan(2 * n, n)};
+  if (stores && !is_external)
+    term.add_force_on(chain.held(), stage, force);
+  else
+    term.add_force(stage, force);
+  for (const std::size_t k : chain.held()) {
+    Flow& support = exchange.by_support_of(k);
+    if (stores) support.energy -= force[k].dot(exchange.led(k));
+    if (!is_external) support.momentum -= force[k];
+  }
+  if (!stores || is_external) {
+    const auto v = stage.columns.velocity();
+    for (std::size_t k = 0; k < n; ++k) {
+      if (stage.moves[k] == 0) continue;
+      if (!stores) exchange.own.energy += force[k].dot(v[k]);
+      if (is_external) exchange.own.momentum += force[k];
+    }
+  }
+  const Inflow* inflow = chain.constraints().inflow;
+  if (stores && chain.has_led_bead())
+    exchange.by_support_of(1).energy +=
+        inflow->charging(chain.full_content(), stage.columns) * term.potential(stage, 1);
+  term.add_power(stage, exchange);
+}
+
+JetTotals Balance::totals(const JetState& jet, bool with_coulomb_energy) {
+  const Stage& stage = look_at(chain_, jet);
+  const JetEnergies motion = motion_of(chain_);
+  CompensatedSum mass, charge, volume;
+  for (std::size_t k = 1; k < jet.beads(); ++k)
+    mass += jet.mass[k], charge += jet.charge[k], volume += jet.volume[k];
+  JetTotals totals{.mass = mass, .charge = charge, .volume = volume};
+  totals.momentum = motion.momentum, totals.kinetic_energy = motion.kinetic;
+  for (std::size_t i = 0; i < accounts_.size(); ++i) {
+    ForceTerm& term = *dynamics_.terms()[i];
+    if (accounts_[i].energy == "elastic_energy") totals.elastic_energy = term.energy(stage);
+    if (with_coulomb_energy && accounts_[i].energy == "coulomb_energy")
+      totals.coulomb_energy = term.energy(stage);
+  }
+  return totals;
+}
+
+} // namespace ehdjet

@@ -1,0 +1,94 @@
+#include "ehdjet/dynamics/acting_chain.hpp"
+
+#include <algorithm>
+
+namespace ehdjet {
+
+void ActingChain::bind(const JetState& jet, std::optional<double> absorbing_plane) {
+  mass_ = jet.mass, charge_ = jet.charge, volume_ = jet.volume, landed_ = jet.landed;
+  absorbing_plane_ = absorbing_plane, absorbed_.clear();
+  has_led_bead_ = jet.has_embryo;
+  inverse_mass_.resize(mass_.size());
+  std::ranges::transform(mass_, inverse_mass_.begin(), [](double m) { return 1 / m; });
+  const Inflow* inflow = constraints_.inflow;
+  changes_content_ = inflow != nullptr && inflow->changes_content(has_led_bead_);
+  if (changes_content_)
+    full_ = {.volume = volume_[1], .mass = mass_[1], .charge = charge_[1]};
+
+  held_.clear();
+  if (inflow != nullptr || constraints_.ends.first) held_.push_back(0);
+  if (has_led_bead_) held_.push_back(1);
+  for (const LandedBead& b : landed_) held_.push_back(b.bead);
+  frozen_ = held_;
+  if (constraints_.ends.last)
+    held_.push_back(jet.links()); // its link goes on like any other
+  moves_.assign(mass_.size(), 1);
+  for (const std::size_t k : held_) moves_[k] = 0;
+
+  stage_.mass = mass_, stage_.charge = charge_, stage_.volume = volume_;
+  stage_.first = jet.first(), stage_.landed = landed_, stage_.moves = moves_;
+}
+
+const Stage& ActingChain::at(double t, std::span<const double> y, BeadRange targets,
+                             BeadRange sources) {
+  for (std::size_t i = 0; i < absorbed_.size(); ++i)
+    charge_[absorbed_[i]] = charge_before_[i];
+  absorbed_.clear();
+  stage_.time = t, stage_.columns = {y, mass_.size()};
+  stage_.targets = targets.within(mass_.size());
+  stage_.sources = sources.within(mass_.size());
+  stage_.invalidate();
+  if (absorbing_plane_) absorb(y);
+  if (changes_content_) {
+    const LinkContent now =
+        constraints_.inflow->acting(full_, t, stage_.columns.position());
+    volume_[1] = now.volume, mass_[1] = now.mass, charge_[1] = now.charge;
+    inverse_mass_[1] = 1 / now.mass;
+  }
+  return stage_;
+}
+
+// A bead that has passed the plane since the step began acts from where it crossed:
+//
+//     r - v (x - h)/v_x                                                         (model 5)
+//
+// To fly on with the velocity of the crossing is right to second order in the time since then,
+// which is less than a step. All beads but the last one of those that have passed have left the
+// chain: they act on nobody.
+void ActingChain::absorb(std::span<const double> y) {
+  const auto r = stage_.columns.position(), v = stage_.columns.velocity();
+  const auto rests = [&](std::size_t k) { return support(k) == Support::collector; };
+  bool any = false;
+  for (std::size_t k = mass_.size(); k-- > stage_.first;) {
+    if (!rests(k)) {
+      if (!(r.x[k] > *absorbing_plane_)) break;
+      any = true;
+    }
+    absorbed_.push_back(k);
+  }
+  if (!any) {
+    absorbed_.clear();
+    return;
+  }
+  state_.assign(y.begin(), y.end());
+  const Vec3View place = JetColumns<double>{state_, mass_.size()}.position();
+  charge_before_.clear();
+  for (const std::size_t k : absorbed_) {
+    charge_before_.push_back(charge_[k]);
+    if (k != absorbed_.back()) charge_[k] = 0;
+    if (rests(k)) continue;
+    const double late = v.x[k] > 0 ? (r.x[k] - *absorbing_plane_) / v.x[k] : 0.0;
+    place.set(k, r[k] - late * v[k]);
+  }
+  stage_.columns = {state_, mass_.size()};
+}
+
+Support ActingChain::support(std::size_t bead) const {
+  if (moves_[bead] != 0) return Support::none;
+  for (const LandedBead& b : landed_)
+    if (b.bead == bead) return Support::collector;
+  if (constraints_.inflow == nullptr) return Support::clamp;
+  return bead == 0 ? Support::inflow : Support::insertion;
+}
+
+} // namespace ehdjet
