@@ -338,6 +338,8 @@ TEST(JetDynamics, can_be_asked_for_some_beads_and_some_sources) {
       for (std::size_t k = 0; k < n; ++k) // off the axis
         jet.columns().position().y[k] += 1e-5 * std::sin(static_cast<double>(k));
       const auto dynamics = build_dynamics(scene);
+      dynamics->bind(jet);
+      dynamics->prescribe(jet.time, jet.y);
       const Rates whole(*dynamics, jet.time, jet);
       double fastest = 0;
       for (std::size_t k = 0; k < n; ++k)
