@@ -184,9 +184,10 @@ void run(const RunOptions& options) {
                 .environment = environment_of(*simulation, options.continued)},
                scene.config.output.flush);
   add_observers(*simulation, file, scene);
-  if (scene.config.output.checkpoints)
-    simulation->make_checkpoints(*scene.config.output.checkpoints,
-                                 [&](const Checkpoint& c) { file.keep(c); });
+  if (scene.config.output.checkpoints) {
+    simulation->make_checkpoints(*scene.config.output.checkpoints);
+    simulation->add(file.checkpoints());
+  }
 
   const double start = simulation->jet().time, end = scene.config.run.end_time;
   if (!options.quiet)

@@ -6,6 +6,20 @@
 
 namespace ehdjet {
 
+namespace {
+
+class Checkpoints final : public Observer {
+public:
+  explicit Checkpoints(RunWriter& writer)
+      : writer_(writer) {}
+  void checkpoint(const Checkpoint& checkpoint) override { writer_.keep(checkpoint); }
+
+private:
+  RunWriter& writer_;
+};
+
+} // namespace
+
 RunFile::RunFile(const std::filesystem::path& path, bool overwrite,
                  const Provenance& provenance, double flush_interval)
     : writer_(std::make_unique<RunWriter>(path, overwrite, provenance, flush_interval)) {}
@@ -38,6 +52,10 @@ std::unique_ptr<Observer> RunFile::budget(double interval, Accounts& accounts) {
 std::unique_ptr<Observer> RunFile::resolving_power(double interval, double link_length) {
   EHDJET_EXPECTS(interval > 0 && link_length > 0);
   return make_resolving_power(*writer_, interval, link_length);
+}
+
+std::unique_ptr<Observer> RunFile::checkpoints() {
+  return std::make_unique<Checkpoints>(*writer_);
 }
 
 void RunFile::note_coulomb(const std::string& method) {

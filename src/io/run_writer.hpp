@@ -1,7 +1,7 @@
 #pragma once
 
 #include "ehdjet/io/run_file.hpp"
-#include "ehdjet/simulation/observer.hpp"
+#include "ehdjet/observers/observer.hpp"
 
 #include <chrono>
 #include <deque>

@@ -3,7 +3,7 @@
 #include "ehdjet/io/run_file.hpp"
 #include "ehdjet/io/run_reader.hpp"
 #include "ehdjet/jet/jet_state.hpp"
-#include "ehdjet/simulation/observer.hpp"
+#include "ehdjet/observers/observer.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "ehdjet/core/checkpoint.hpp"
-#include "ehdjet/simulation/observer.hpp"
+#include "ehdjet/observers/observer.hpp"
 
 #include <filesystem>
 #include <map>
@@ -42,6 +42,9 @@ public:
   std::unique_ptr<Observer> budget(double interval, Accounts& accounts);
   /// R = link_length/l along the jet; `link_length`: l_step [m].
   std::unique_ptr<Observer> resolving_power(double interval, double link_length);
+
+  /// Keeps each checkpoint that it is shown.
+  std::unique_ptr<Observer> checkpoints();
 
   /// Keeps a checkpoint instead of the last one, which stays until the new one is complete, and
   /// flushes. All of a run have the same names.
