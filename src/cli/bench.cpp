@@ -120,7 +120,6 @@ Measured measure(Scene scene, double stationary_from, std::size_t threads, bool 
       throw RunError(fmt::format("stopped by {}", signal));
   });
   simulation->run_until(end);
-  if (progress) progress->finish();
   return {.mean_beads = all.value(),
           .stationary_beads = stationary.value(),
           .beads_before = before.mean(),

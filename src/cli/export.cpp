@@ -1,8 +1,8 @@
 #include "export.hpp"
 
 #include "ehdjet/io/export.hpp"
-#include "ehdjet/io/run_reader.hpp"
 #include "ehdjet/io/text_output.hpp"
+#include "ehdjet/run_files/run_reader.hpp"
 
 #include <CLI/CLI.hpp>
 #include <filesystem>

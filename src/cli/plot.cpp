@@ -2,8 +2,8 @@
 
 #include "ehdjet/core/error.hpp"
 #include "ehdjet/io/plot_page.hpp"
-#include "ehdjet/io/run_reader.hpp"
 #include "ehdjet/io/text_output.hpp"
+#include "ehdjet/run_files/run_reader.hpp"
 
 #include <CLI/CLI.hpp>
 #include <cerrno>

@@ -58,7 +58,7 @@ void Progress::show(const Simulation& simulation) {
   std::fflush(stderr);
 }
 
-void Progress::finish() const {
+Progress::~Progress() {
   if (terminal_) fmt::print(stderr, "\r\033[K");
 }
 

@@ -12,9 +12,10 @@ namespace ehdjet::cli {
 class Progress {
 public:
   Progress(double start_time, double end_time);
+  ~Progress(); ///< leaves the terminal at the start of an empty line
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
   void show(const Simulation& simulation);
-  /// Leaves the terminal at the start of an empty line.
-  void finish() const;
 
 private:
   struct Sample {

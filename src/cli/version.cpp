@@ -1,12 +1,10 @@
 #include "version.hpp"
 
-#include "ehdjet/core/version.hpp"
-#include "ehdjet/coulomb/direct_sum.hpp"
+#include "ehdjet/runs/run_scene.hpp"
 
 #include <Eigen/Core>
 #include <gsl/gsl_version.h>
 #include <hdf5.h>
-#include <omp.h>
 
 #include <CLI/Version.hpp>
 #include <fmt/format.h>
@@ -17,20 +15,14 @@ namespace ehdjet::cli {
 std::map<std::string, std::string> environment() {
   unsigned major = 0, minor = 0, release = 0;
   H5get_libversion(&major, &minor, &release);
-  return {
-      {"version", version::number},
-      {"commit", version::commit},
-      {"compiler", version::compiler},
-      {"build_type", version::build_type},
-      {"simd", std::string(name_of(best_simd_level()))},
-      {"threads", std::to_string(omp_get_max_threads())},
-      {"libraries",
-       fmt::format("Eigen {}.{}.{}, fmt {}.{}.{}, GSL {}, HDF5 {}.{}.{}, CLI11 {}, toml++ "
-                   "{}.{}.{}, OpenMP {}",
-                   EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION,
-                   FMT_VERSION / 10000, FMT_VERSION / 100 % 100, FMT_VERSION % 100,
-                   gsl_version, major, minor, release, CLI11_VERSION, TOML_LIB_MAJOR,
-                   TOML_LIB_MINOR, TOML_LIB_PATCH, _OPENMP)}};
+  auto all = build_environment();
+  all["libraries"] = fmt::format(
+      "Eigen {}.{}.{}, fmt {}.{}.{}, GSL {}, HDF5 {}.{}.{}, CLI11 {}, toml++ "
+      "{}.{}.{}, OpenMP {}",
+      EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION, FMT_VERSION / 10000,
+      FMT_VERSION / 100 % 100, FMT_VERSION % 100, gsl_version, major, minor, release,
+      CLI11_VERSION, TOML_LIB_MAJOR, TOML_LIB_MINOR, TOML_LIB_PATCH, _OPENMP);
+  return all;
 }
 
 std::string version_text() {

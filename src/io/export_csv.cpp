@@ -2,105 +2,87 @@
 #include "ehdjet/io/export.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <limits>
 #include <numbers>
+#include <string>
 #include <vector>
 
+#include "record_columns.hpp"
 #include "selected_frames.hpp"
 
 namespace ehdjet {
 
-void export_observables(const RunReader& run, TextOutput& output) {
-  // Their names in the file, and the headers, in the same order.
-  static constexpr const char* columns[] = {
-      "time",        "beads",        "tip_x",        "tip_yz",
-      "path_length", "nozzle_speed", "impact_speed", "collector_radius",
-      "current_in",  "current_out",  "aperture",     "evaluations",
-      "steps",       "rejected"};
-  std::vector<std::vector<double>> values;
-  for (const char* column : columns) values.push_back(run.observable(column));
-  const auto present = run.columns();
-  const bool with_error = std::ranges::find(present, "coulomb_error") != present.end();
-  if (with_error) values.push_back(run.observable("coulomb_error"));
-  output.print(
-      "time_s,beads,tip_x_m,tip_yz_m,path_length_m,nozzle_speed_m_s,impact_speed_m_s,"
-      "collector_radius_m,current_in_a,current_out_a,aperture_deg,evaluations,steps,"
-      "rejected{}\n",
-      with_error ? ",coulomb_error" : "");
-  for (std::size_t row = 0; row < values.front().size(); ++row) {
-    for (std::size_t c = 0; c < values.size(); ++c) {
-      output.print("{}{:.17g}", c == 0 ? "" : ",", values[c][row]);
-    }
+namespace {
+
+/// What follows a name in a header: "kg m/s" gives "_kg_m_s".
+std::string suffix(const std::string& unit) {
+  if (unit == "1") return "";
+  std::string text = "_";
+  for (const char c : unit)
+    if (c != '^')
+      text += c == ' ' || c == '/'
+                  ? '_'
+                  : static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return text;
+}
+
+void print_csv(const RunTable& table, TextOutput& output) {
+  const auto& columns = table.columns;
+  for (std::size_t c = 0; c < columns.size(); ++c)
+    output.print("{}{}{}", c == 0 ? "" : ",", columns[c].name, suffix(columns[c].unit));
+  output.print("\n");
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    for (std::size_t c = 0; c < columns.size(); ++c)
+      output.print("{}{:.17g}", c == 0 ? "" : ",", columns[c].values[row]);
     output.print("\n");
   }
   output.close();
+}
+
+/// A table with its columns in the order of `list`, without those that the run does not have.
+template <class List>
+RunTable in_order(const RunTable& table, const List& list) {
+  RunTable ordered;
+  for (const ColumnInfo& info : list)
+    if (const RunTable::Column* column = table.find(info.name))
+      ordered.columns.push_back(*column);
+  return ordered;
+}
+
+} // namespace
+
+void export_observables(const RunReader& run, TextOutput& output) {
+  print_csv(in_order(run.table("observables"), observable_columns()), output);
 }
 
 void export_beads(const RunReader& run, std::optional<double> time, TextOutput& output) {
-  const Frame f = run.frame(selected_frame(run, time));
-  output.print(
-      "bead,x_m,y_m,z_m,vx_m_s,vy_m_s,vz_m_s,stress_pa,radius_m,volume_m3,mass_kg,charge_c,"
-      "landed,embryo\n");
-  for (std::size_t k = 0; k < f.beads(); ++k) {
-    output.print("{},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},", k, f.x[k],
-                 f.y[k], f.z[k], f.vx[k], f.vy[k], f.vz[k], f.stress[k]);
-    output.print("{:.17g},{:.17g},{:.17g},{:.17g},{},{}\n", f.radius[k], f.volume[k],
-                 f.mass[k], f.charge[k], f.landed[k], f.embryo[k]);
-  }
-  output.close();
+  const Frame frame = run.frame(run.nearest_frame(time));
+  RunTable table{{{"bead", "1", std::vector<double>(frame.rows())}}};
+  for (std::size_t k = 0; k < frame.rows(); ++k)
+    table.columns[0].values[k] = static_cast<double>(k);
+  for (const BeadColumn& c : bead_columns())
+    table.columns.push_back({c.name, c.unit, column_or_zeros(frame, c.name)});
+  print_csv(table, output);
 }
 
 void export_deposit(const RunReader& run, TextOutput& output) {
-  const DepositTable d = run.deposit();
-  output.print(
-      "time_s,removal_time_s,x_m,y_m,z_m,vx_m_s,vy_m_s,vz_m_s,stress_pa,landing_radius_m,"
-      "radius_m,mass_kg,charge_c,volume_m3,arc_length_m\n");
-  double arc_length = 0;
-  for (std::size_t k = 0; k < d.beads(); ++k) {
-    arc_length += d.volume[k] / (std::numbers::pi * d.radius[k] * d.radius[k]);
-    output.print("{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},",
-                 d.time[k], d.removal_time[k], d.x[k], d.y[k], d.z[k], d.vx[k], d.vy[k],
-                 d.vz[k]);
-    output.print("{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g}\n", d.stress[k],
-                 d.landing_radius[k], d.radius[k], d.mass[k], d.charge[k], d.volume[k],
-                 arc_length);
-  }
-  output.close();
+  RunTable table = in_order(run.table("deposit"), deposit_columns());
+  const auto &volume = table["volume"], &radius = table["radius"];
+  std::vector<double> arc_length(table.rows());
+  double end = 0;
+  for (std::size_t k = 0; k < table.rows(); ++k)
+    arc_length[k] = end += volume[k] / (std::numbers::pi * radius[k] * radius[k]);
+  table.columns.push_back({"arc_length", "m", std::move(arc_length)});
+  print_csv(table, output);
 }
 
 void export_refinements(const RunReader& run, TextOutput& output) {
-  const RefinementTable t = run.refinements();
-  const bool with_coulomb = !t.coulomb_energy.empty();
-  output.print("time_s,kept,beads_before,beads_after,mass_change_kg,charge_change_c,"
-               "volume_change_m3,momentum_change_x_kg_m_s,momentum_change_y_kg_m_s,"
-               "momentum_change_z_kg_m_s,kinetic_energy_change_j,elastic_energy_change_j,"
-               "{}worst_link\n",
-               with_coulomb ? "coulomb_energy_change_j," : "");
-  for (std::size_t i = 0; i < t.time.size(); ++i) {
-    output.print("{:.17g},{},{},{},{:.17g},{:.17g},{:.17g},", t.time[i], t.kept[i],
-                 t.beads_before[i], t.beads_after[i], t.mass[i], t.charge[i], t.volume[i]);
-    output.print("{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},", t.px[i], t.py[i], t.pz[i],
-                 t.kinetic_energy[i], t.elastic_energy[i]);
-    if (with_coulomb) output.print("{:.17g},", t.coulomb_energy[i]);
-    output.print("{:.17g}\n", t.worst_link[i]);
-  }
-  output.close();
+  print_csv(in_order(run.table("refinements"), refinement_columns()), output);
 }
 
 void export_budget(const RunReader& run, TextOutput& output) {
-  const BudgetTable t = run.budget();
-  output.print("time_s");
-  for (std::size_t c = 0; c < t.names.size(); ++c) {
-    const std::string& unit = t.units[c];
-    output.print(",{}{}", t.names[c], unit == "J" ? "_j" : unit == "1" ? "" : "_kg_m_s");
-  }
-  output.print("\n");
-  for (std::size_t i = 0; i < t.time.size(); ++i) {
-    output.print("{:.17g}", t.time[i]);
-    for (const auto& column : t.columns) output.print(",{:.17g}", column[i]);
-    output.print("\n");
-  }
-  output.close();
+  print_csv(run.table("budget"), output);
 }
 
 void export_resolving_power(const RunReader& run, std::optional<double> from,

@@ -31,17 +31,18 @@ void print_array(TextOutput& output, const char* type, const char* name, int com
       base64(bytes));
 }
 
-std::vector<double> interleaved(const std::vector<double>& x, const std::vector<double>& y,
-                                const std::vector<double>& z) {
-  std::vector<double> vectors;
-  vectors.reserve(3 * x.size());
-  for (std::size_t k = 0; k < x.size(); ++k)
-    vectors.insert(vectors.end(), {x[k], y[k], z[k]});
-  return vectors;
+std::vector<double> vectors(const Frame& frame, const char* x, const char* y,
+                            const char* z) {
+  std::vector<double> all;
+  all.reserve(3 * frame.rows());
+  const auto &xs = frame[x], &ys = frame[y], &zs = frame[z];
+  for (std::size_t k = 0; k < frame.rows(); ++k)
+    all.insert(all.end(), {xs[k], ys[k], zs[k]});
+  return all;
 }
 
 void print_poly_line(const Frame& frame, TextOutput& output) {
-  std::vector<std::int64_t> connectivity(frame.beads());
+  std::vector<std::int64_t> connectivity(frame.rows());
   std::iota(connectivity.begin(), connectivity.end(), 0);
   output.print("<?xml version=\"1.0\"?>\n"
                "<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" "
@@ -51,18 +52,18 @@ void print_poly_line(const Frame& frame, TextOutput& output) {
   output.print("</FieldData>\n");
   output.print("<Piece NumberOfPoints=\"{}\" NumberOfVerts=\"0\" NumberOfLines=\"1\" "
                "NumberOfStrips=\"0\" NumberOfPolys=\"0\">\n",
-               frame.beads());
+               frame.rows());
   output.print("<PointData Scalars=\"radius\" Vectors=\"velocity\">\n");
-  print_array(output, "Float64", "radius", 1, frame.radius);
-  print_array(output, "Float64", "stress", 1, frame.stress);
-  print_array(output, "Float64", "velocity", 3, interleaved(frame.vx, frame.vy, frame.vz));
-  print_array(output, "Float64", "charge", 1, frame.charge);
+  print_array(output, "Float64", "radius", 1, frame["radius"]);
+  print_array(output, "Float64", "stress", 1, column_or_zeros(frame, "stress"));
+  print_array(output, "Float64", "velocity", 3, vectors(frame, "vx", "vy", "vz"));
+  print_array(output, "Float64", "charge", 1, frame["charge"]);
   output.print("</PointData>\n<Points>\n");
-  print_array(output, "Float64", "Points", 3, interleaved(frame.x, frame.y, frame.z));
+  print_array(output, "Float64", "Points", 3, vectors(frame, "x", "y", "z"));
   output.print("</Points>\n<Lines>\n");
   print_array(output, "Int64", "connectivity", 1, connectivity);
   print_array(output, "Int64", "offsets", 1,
-              std::vector<std::int64_t>{static_cast<std::int64_t>(frame.beads())});
+              std::vector<std::int64_t>{static_cast<std::int64_t>(frame.rows())});
   output.print("</Lines>\n</Piece>\n</PolyData>\n</VTKFile>\n");
   output.close();
 }

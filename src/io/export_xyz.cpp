@@ -1,5 +1,9 @@
 #include "ehdjet/io/export.hpp"
 
+#include <cstddef>
+#include <optional>
+#include <vector>
+
 #include "selected_frames.hpp"
 
 namespace ehdjet {
@@ -8,20 +12,22 @@ namespace {
 
 char species(const Frame& frame, std::size_t bead) {
   if (bead == 0) return 'N';
-  if (frame.embryo[bead] != 0) return 'E';
-  return frame.landed[bead] != 0 ? 'L' : 'B';
+  if (frame["embryo"][bead] != 0) return 'E';
+  return frame["landed"][bead] != 0 ? 'L' : 'B';
 }
 
-void print(const Frame& f, TextOutput& output) {
+void print(const Frame& frame, TextOutput& output) {
   output.print(
       "{}\nProperties=species:S:1:pos:R:3:velo:R:3:radius:R:1:stress:R:1:charge:R:1 "
       "Time={:.17g} Units=\"s m m/s m Pa C\"\n",
-      f.beads(), f.time);
-  for (std::size_t k = 0; k < f.beads(); ++k) {
-    output.print(
-        "{} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g}\n",
-        species(f, k), f.x[k], f.y[k], f.z[k], f.vx[k], f.vy[k], f.vz[k], f.radius[k],
-        f.stress[k], f.charge[k]);
+      frame.rows(), frame.time);
+  std::vector<std::vector<double>> columns;
+  for (const char* name : {"x", "y", "z", "vx", "vy", "vz", "radius", "stress", "charge"})
+    columns.push_back(column_or_zeros(frame, name));
+  for (std::size_t k = 0; k < frame.rows(); ++k) {
+    output.print("{}", species(frame, k));
+    for (const auto& column : columns) output.print(" {:.17g}", column[k]);
+    output.print("\n");
   }
 }
 

@@ -11,8 +11,6 @@
 #include <utility>
 #include <vector>
 
-#include "selected_frames.hpp"
-
 namespace ehdjet {
 
 namespace {
@@ -128,9 +126,14 @@ struct Extent {
   Unit unit;
 };
 
-Extent extent_of(const Frame& f, const DepositTable& deposit) {
-  const double across = std::max(largest(f.y, f.z), largest(deposit.y, deposit.z));
-  Range x = range_of(f.x);
+// The deposit across the axis, bead by bead [m].
+struct Deposited {
+  Values y, z;
+};
+
+Extent extent_of(const Frame& f, const Deposited& deposit) {
+  const double across = std::max(largest(f["y"], f["z"]), largest(deposit.y, deposit.z));
+  Range x = range_of(f["x"]);
   const double least =
       std::max({x.high - x.low, 0.3 * across, 1e-9}); // a flat chain is no line
   x.high = x.low + least;
@@ -154,31 +157,35 @@ std::pair<Box, Box> view_boxes(const Extent& extent, double bottom, double top) 
           {side_end + gap, end, middle - half_height, middle + half_height}};
 }
 
-// What has landed by the time of the frame.
-DepositTable landed_by(double time, DepositTable deposit) {
-  const auto later = [&](double removal) { return removal > time; };
-  const auto end =
-      std::find_if(deposit.removal_time.begin(), deposit.removal_time.end(), later);
-  const auto beads = static_cast<std::size_t>(end - deposit.removal_time.begin());
-  deposit.time.resize(beads), deposit.y.resize(beads), deposit.z.resize(beads);
-  return deposit;
+// What has landed by that time [s].
+Deposited landed_by(double time, const RunReader& run) {
+  if (!run.has("deposit")) return {};
+  const RunTable deposit = run.table("deposit");
+  const Values& removal = deposit["removal_time"];
+  const auto later = [&](double t) { return t > time; };
+  const auto beads =
+      static_cast<std::size_t>(std::ranges::find_if(removal, later) - removal.begin());
+  Deposited landed{deposit["y"], deposit["z"]};
+  landed.y.resize(beads), landed.z.resize(beads);
+  return landed;
 }
 
 // The jet from the side and along its axis.
-std::string views(const Frame& f, const DepositTable& deposit, double bottom, double top) {
+std::string views(const Frame& f, const Deposited& deposit, double bottom, double top) {
   const Extent extent = extent_of(f, deposit);
   const auto [side, along] = view_boxes(extent, bottom, top);
   const double m = extent.unit.size;
   Values x, y, z; // of landed beads
-  for (std::size_t k = 0; k < f.beads(); ++k) {
-    if (f.landed[k] != 0) x.push_back(f.x[k]), y.push_back(f.y[k]), z.push_back(f.z[k]);
+  for (std::size_t k = 0; k < f.rows(); ++k) {
+    if (f["landed"][k] != 0)
+      x.push_back(f["x"][k]), y.push_back(f["y"][k]), z.push_back(f["z"][k]);
   }
-  std::string s = data_block("side", f.x, f.y, m, m) + data_block("along", f.y, f.z, m, m)
-                  + data_block("landed_side", x, y, m, m)
-                  + data_block("landed_along", y, z, m, m)
-                  + data_block("deposit", deposit.y, deposit.z, m, m)
-                  + data_block("nozzle_side", {f.x[0]}, {f.y[0]}, m, m)
-                  + data_block("nozzle_along", {f.y[0]}, {f.z[0]}, m, m);
+  std::string s =
+      data_block("side", f["x"], f["y"], m, m) + data_block("along", f["y"], f["z"], m, m)
+      + data_block("landed_side", x, y, m, m) + data_block("landed_along", y, z, m, m)
+      + data_block("deposit", deposit.y, deposit.z, m, m)
+      + data_block("nozzle_side", {f["x"][0]}, {f["y"][0]}, m, m)
+      + data_block("nozzle_along", {f["y"][0]}, {f["z"][0]}, m, m);
   const std::string jet =
       fmt::format("with linespoints lc rgb '{}' lw 1.3 pt 7 ps 0.35 notitle", blue);
   const std::string nozzle = "with points lc rgb 'black' pt 5 ps 1.1 ";
@@ -198,8 +205,8 @@ std::string views(const Frame& f, const DepositTable& deposit, double bottom, do
                      "set xlabel 'y  ({0})'\nset ylabel 'z  ({0})' offset 1,0\n"
                      "set xrange [-{1:.7g}:{1:.7g}]\nset yrange [-{1:.7g}:{1:.7g}]\nplot ",
                      extent.unit.name, extent.across / m,
-                     deposit.beads() > 0 ? "" : "unset key");
-  if (deposit.beads() > 0) {
+                     deposit.y.empty() ? "unset key" : "");
+  if (!deposit.y.empty()) {
     s +=
         fmt::format("$deposit with points lc rgb '{}' pt 7 ps 0.4 title 'deposit', ", grey);
   }
@@ -218,17 +225,17 @@ struct Panel {
 std::vector<Panel> panels(const RunReader& run) {
   const auto with_length_unit = [&](const char* title, const char* column,
                                     const char* colour) {
-    Values values = run.observable(column);
+    Values values = run.column("observables", column);
     const Unit unit = length_unit(largest(values));
     for (double& value : values) value /= unit.size;
     return Panel{title, unit.name, colour, std::move(values)};
   };
-  Values impact = run.observable("impact_speed");
+  Values impact = run.column("observables", "impact_speed");
   for (double& speed : impact) {
     if (speed == 0)
       speed = std::numeric_limits<double>::quiet_NaN(); // nothing has landed yet
   }
-  return {{"Beads", "", blue, run.observable("beads")},
+  return {{"Beads", "", blue, run.column("observables", "beads")},
           with_length_unit("Path length", "path_length", vermillion),
           with_length_unit("Tip: distance from the axis", "tip_yz", green),
           {"Impact speed", "m/s", purple, std::move(impact)}};
@@ -254,7 +261,7 @@ std::string draw(const Panel& panel, const Values& time, const Unit& unit, const
 
 std::string observables(const RunReader& run, std::optional<double> frame_time,
                         double bottom, double top, std::size_t per_row) {
-  const Values time = run.observable("time");
+  const Values time = run.column("observables", "time");
   const std::vector<Panel> all = panels(run);
   const Unit unit = time_unit(largest(time));
   const std::size_t rows = all.size() / per_row;
@@ -285,8 +292,9 @@ std::string plot_page(const RunReader& run, std::optional<double> time,
                       const std::filesystem::path& output) {
   std::string s = fmt::format("set encoding utf8\nset terminal {}\nset output {}\n",
                               terminal(output), in_quotes(output.string()));
-  const bool has_frames = run.has_frames() && !run.frame_times().empty();
-  const bool has_observables = run.has_observables() && !run.observable("time").empty();
+  const bool has_frames = run.has("frames") && !run.frame_times().empty();
+  const bool has_observables =
+      run.has("observables") && !run.column("observables", "time").empty();
   if (!has_frames && !has_observables) {
     throw InputError(run.path().string() + " has neither frames nor observables to plot");
   }
@@ -297,14 +305,13 @@ std::string plot_page(const RunReader& run, std::optional<double> time,
   std::string views_text, heading = run.path().filename().string();
   std::optional<double> frame_time;
   if (has_frames) {
-    const Frame frame = run.frame(selected_frame(run, time));
+    const Frame frame = run.frame(run.nearest_frame(time));
     const Unit unit = time_unit(frame.time);
     frame_time = frame.time;
     heading += fmt::format(",  t = {:.6g} {},  {} beads", frame.time / unit.size, unit.name,
-                           frame.beads());
-    views_text = views(
-        frame, run.has_deposit() ? landed_by(frame.time, run.deposit()) : DepositTable{},
-        has_observables ? 0.42 : 0.1, 0.895);
+                           frame.rows());
+    views_text =
+        views(frame, landed_by(frame.time, run), has_observables ? 0.42 : 0.1, 0.895);
   }
   s += fmt::format("set label 1 {} at screen 0.5,0.968 center font ',20' noenhanced\n",
                    in_quotes(heading));

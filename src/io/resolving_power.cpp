@@ -1,9 +1,11 @@
+#include "ehdjet/core/error.hpp"
+#include "ehdjet/io/records.hpp"
+
 #include <array>
 #include <cstddef>
 #include <span>
+#include <utility>
 #include <vector>
-
-#include "run_writer.hpp"
 
 namespace ehdjet {
 
@@ -13,20 +15,21 @@ constexpr std::size_t places = 101; // lambda = 0, 0.01, ... 1
 
 class ResolvingPower final : public Observer {
 public:
-  ResolvingPower(RunWriter& writer, double interval, double link_length, hid_t group)
-      : writer_(writer)
+  ResolvingPower(std::shared_ptr<RunFile> file, double interval, double link_length)
+      : file_(std::move(file))
       , schedule_(interval)
       , link_length_(link_length)
-      , time_(writer.add_column(group, {"time", "s", "of each sample"}, double{}, 1024))
-      , power_(writer.add_column(group,
-                                 {"r", "1",
-                                  "R = link_length/l at all values of lambda, sample after "
-                                  "sample"},
-                                 double{}, places * 64)) {
-    auto& lambda = writer.add_column(
-        group, {"lambda", "1", "arc length from the nozzle over the jet's"}, double{},
-        places);
-    for (std::size_t i = 0; i < places; ++i) lambda.append(at(i));
+      , time_(add({"time", "s", "of each sample"}, 1024))
+      , power_(add(
+            {"r", "1", "R = link_length/l at all values of lambda, sample after sample"},
+            places * 64)) {
+    EHDJET_EXPECTS(interval > 0 && link_length > 0);
+    Column& lambda =
+        add({"lambda", "1", "arc length from the nozzle over the jet's"}, places);
+    file_->write([&] {
+      for (std::size_t i = 0; i < places; ++i) lambda.append(at(i));
+    });
+    file_->flush();
   }
 
   [[nodiscard]] double next_time() const override { return schedule_.next(); }
@@ -34,7 +37,7 @@ public:
 
   void observe(const JetSnapshot& snapshot) override {
     sample(snapshot);
-    writer_.write([&] {
+    file_->write([&] {
       power_.append(std::span<const double>(row_));
       time_.append(snapshot.time); // last: it makes the values above a sample
     });
@@ -42,6 +45,9 @@ public:
   }
 
 private:
+  Column& add(const ColumnInfo& info, std::size_t chunk_rows) {
+    return file_->add_column("resolving_power", info, chunk_rows);
+  }
   static double at(std::size_t place) { return static_cast<double>(place) / (places - 1); }
 
   // R of the link in which each lambda lies. The link across an embryo is one link.
@@ -62,25 +68,19 @@ private:
     }
   }
 
-  RunWriter& writer_;
+  std::shared_ptr<RunFile> file_;
   Schedule schedule_;
   double link_length_; // [m]
   std::vector<double> length_;
   std::array<double, places> row_{};
-  hdf5::Column &time_, &power_;
+  Column &time_, &power_;
 };
 
 } // namespace
 
-std::unique_ptr<Observer> make_resolving_power(RunWriter& writer, double interval,
-                                               double link_length) {
-  std::unique_ptr<Observer> observer;
-  writer.write([&] {
-    observer = std::make_unique<ResolvingPower>(writer, interval, link_length,
-                                                writer.create_group("resolving_power"));
-  });
-  writer.flush();
-  return observer;
+std::unique_ptr<Observer> record_resolving_power(std::shared_ptr<RunFile> file,
+                                                 double interval, double link_length) {
+  return std::make_unique<ResolvingPower>(std::move(file), interval, link_length);
 }
 
 } // namespace ehdjet

@@ -1,9 +1,11 @@
 #pragma once
 
-#include "ehdjet/io/run_reader.hpp"
+#include "ehdjet/run_files/run_reader.hpp"
 
 #include <cstddef>
 #include <optional>
+#include <string_view>
+#include <vector>
 
 namespace ehdjet {
 
@@ -11,10 +13,16 @@ struct FrameRange {
   std::size_t first, end;
 };
 
-/// The frame nearest to `time`, or the last one. errors : InputError if there is none yet
-std::size_t selected_frame(const RunReader& run, std::optional<double> time);
-
 /// The frame nearest to `time`, or all of them. errors : InputError if there is none yet
-FrameRange selected_frames(const RunReader& run, std::optional<double> time);
+inline FrameRange selected_frames(const RunReader& run, std::optional<double> time) {
+  const std::size_t last = run.nearest_frame(time);
+  return {time ? last : 0, last + 1};
+}
+
+/// A column of a frame, or zeros if the run had none.
+inline std::vector<double> column_or_zeros(const Frame& frame, std::string_view name) {
+  const RunTable::Column* found = frame.find(name);
+  return found != nullptr ? found->values : std::vector<double>(frame.rows());
+}
 
 } // namespace ehdjet

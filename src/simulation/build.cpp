@@ -185,7 +185,7 @@ std::unique_ptr<JetDynamics> build_dynamics(const Scene& scene) {
   return compose_dynamics(scene, build_inflow(scene.config));
 }
 
-std::unique_ptr<Simulation> build_simulation(const Scene& scene) {
+std::unique_ptr<Simulation> build_simulation(const Scene& scene, Extras extras) {
   const SceneConfig& c = scene.config;
   auto integrator = make_integrator(c.integrator.method, error_scale(scene));
   StepLimits limits{.fixed = c.integrator.step,
@@ -194,8 +194,10 @@ std::unique_ptr<Simulation> build_simulation(const Scene& scene) {
                     .shortest = c.integrator.min_step,
                     .shortest_link = shortest_link(scene)};
   const std::shared_ptr<const InflowRule> inflow = build_inflow(c);
-  auto simulation = std::make_unique<Simulation>(
-      initial_jet(scene), compose_dynamics(scene, inflow), std::move(integrator), limits);
+  auto dynamics = compose_dynamics(scene, inflow);
+  for (auto& force : extras.forces) dynamics->add(std::move(force));
+  auto simulation = std::make_unique<Simulation>(initial_jet(scene), std::move(dynamics),
+                                                 std::move(integrator), limits);
   if (c.integrator.events == EventPlacement::step_end)
     simulation->snap_events_to_step_ends();
 
@@ -212,6 +214,8 @@ std::unique_ptr<Simulation> build_simulation(const Scene& scene) {
   if (inflow)
     for (auto& event : inflow->events()) simulation->add(std::move(event));
   if (c.refinement) simulation->add(build_refinement(c, simulation->dynamics()));
+  for (auto& event : extras.events) simulation->add(std::move(event));
+  for (auto& observer : extras.observers) simulation->add(std::move(observer));
   return simulation;
 }
 

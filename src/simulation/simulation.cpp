@@ -66,6 +66,20 @@ double closest_approach(const Vec3& d0, const Vec3& d1) {
   return (d0 + s * e).squaredNorm();
 }
 
+/// An observer made of a function.
+class AfterEachStep final : public Observer {
+public:
+  AfterEachStep(const Simulation& simulation, Simulation::StepHook hook)
+      : simulation_(simulation)
+      , hook_(std::move(hook)) {}
+  [[nodiscard]] Interest interest() const override { return {.ends_of_steps = true}; }
+  void after_step(const JetSnapshot& /*snapshot*/) override { hook_(simulation_); }
+
+private:
+  const Simulation& simulation_; // owns this observer
+  Simulation::StepHook hook_;
+};
+
 class WallClock {
 public:
   [[nodiscard]] double seconds() const {
@@ -106,6 +120,22 @@ void Simulation::add(std::unique_ptr<Event> event) {
   restart_step_.push_back(0);
 }
 
+void Simulation::add(std::shared_ptr<Observer> observer) {
+  observer->skip_to(restored_at_);
+  const Interest interest = observer->interest();
+  if (interest.steps_and_events) step_observers_.push_back(observer.get());
+  if (interest.ends_of_steps) step_end_observers_.push_back(observer.get());
+  observers_.push_back(std::move(observer));
+}
+
+void Simulation::after_each_step(StepHook hook) {
+  add(std::make_unique<AfterEachStep>(*this, std::move(hook)));
+}
+
+JetSnapshot Simulation::now() const {
+  return {jet_.time, jet_.columns(), jet_, ledger_, statistics_};
+}
+
 void Simulation::run_until(double end_time) {
   const WallClock clock;
   const double wall_before = statistics_.wall_time;
@@ -128,9 +158,9 @@ void Simulation::run_until(double end_time) {
     if (const auto t = found ? events_[found->index]->scheduled_time() : std::nullopt)
       next_time = CompensatedSum(*t);
     const double t1 = next_time;
-    for (const auto& o : step_observers_) o->begin_step(step, events_);
+    for (Observer* o : step_observers_) o->begin_step(step, events_);
     show_until(step, t1);
-    for (const auto& o : step_observers_) o->end_step(t1, theta);
+    for (Observer* o : step_observers_) o->end_step(t1, theta);
     expected_event_ = found || !events_located_ ? never : expected_time(step);
 
     if (found) {
@@ -147,16 +177,16 @@ void Simulation::run_until(double end_time) {
     apply_events(found ? found->index : events_.size());
     statistics_.wall_time = wall_before + clock.seconds();
     if (jet_.time >= checkpoint_due_ && !cut) make_checkpoint();
-    if (hook_) hook_(*this);
+    for (Observer* o : step_end_observers_) o->after_step(now());
   }
   for (const auto& o : observers_)
     while (o->next_time() <= end_time)
-      show(*o, {o->next_time(), std::as_const(jet_).columns(), jet_, ledger_, statistics_});
+      show(*o, {o->next_time(), now().columns, jet_, ledger_, statistics_});
 }
 
-void Simulation::make_checkpoints(double interval, CheckpointSink sink) {
+void Simulation::make_checkpoints(double interval) {
   EHDJET_EXPECTS(interval > 0);
-  checkpoint_interval_ = interval, checkpoint_sink_ = std::move(sink);
+  checkpoint_interval_ = interval;
   checkpoint_due_ = next_checkpoint();
 }
 
@@ -172,11 +202,12 @@ void Simulation::make_checkpoint() {
   Checkpoint checkpoint;
   archive(Archive::into(checkpoint));
   checkpoint_due_ = next_checkpoint();
-  at_time(jet_.time, [&] { checkpoint_sink_(checkpoint); });
+  at_time(jet_.time, [&] {
+    for (const auto& o : observers_) o->checkpoint(checkpoint);
+  });
 }
 
 void Simulation::restore(const Checkpoint& checkpoint) {
-  EHDJET_EXPECTS(observers_.empty() && step_observers_.empty());
   const std::size_t columns = jet_.y.size() / jet_.beads(), events = events_.size();
   archive(Archive::from(checkpoint));
   if (jet_.y.size() != columns * jet_.beads() || restart_step_.size() != events
@@ -184,7 +215,8 @@ void Simulation::restore(const Checkpoint& checkpoint) {
     throw InputError("the checkpoint is of another scene");
   if (statistics_.method) statistics_.method->in_use = integrator_->method_in_use();
   restored_at_ = jet_.time;
-  if (checkpoint_sink_) checkpoint_due_ = next_checkpoint();
+  for (const auto& o : observers_) o->skip_to(restored_at_);
+  if (checkpoint_interval_ > 0) checkpoint_due_ = next_checkpoint();
   dynamics_->bind(jet_);
   integrator_->restart();
 }
@@ -381,10 +413,10 @@ void Simulation::apply(Event& event, EventContext& context) {
   if (!step_observers_.empty()) {
     JetState seen = jet_; // as if what the step went through had ended it
     for (const auto& e : events_) e->anticipate(jet_.time, seen);
-    for (const auto& o : step_observers_) o->before_event(event, seen);
+    for (Observer* o : step_observers_) o->before_event(event, seen);
   }
   event.apply(context);
-  for (const auto& o : step_observers_) o->after_event(event, jet_);
+  for (Observer* o : step_observers_) o->after_event(event, jet_);
 }
 
 void Simulation::fail(double h, const char* why) {

@@ -1,6 +1,6 @@
 #include "ehdjet/core/error.hpp"
 #include "ehdjet/io/export.hpp"
-#include "ehdjet/io/run_file.hpp"
+#include "ehdjet/run_files/run_file.hpp"
 
 #include <gtest/gtest.h>
 
@@ -63,13 +63,13 @@ TEST_F(Export, observables_have_the_documented_columns_and_keep_every_bit) {
   ASSERT_EQ(rows.size(), 9U);
   for (std::size_t k = 0; k < rows.size(); ++k) {
     ASSERT_EQ(rows[k].size(), 14U);
-    EXPECT_EQ(rows[k][0], run.observable("time")[k]);
-    EXPECT_EQ(rows[k][2], run.observable("tip_x")[k]);
-    EXPECT_EQ(rows[k][4], run.observable("path_length")[k]);
-    EXPECT_EQ(rows[k][6], run.observable("impact_speed")[k]);
-    EXPECT_EQ(rows[k][8], run.observable("current_in")[k]);
-    EXPECT_EQ(rows[k][10], run.observable("aperture")[k]);
-    EXPECT_EQ(rows[k][11], run.observable("evaluations")[k]);
+    EXPECT_EQ(rows[k][0], run.column("observables", "time")[k]);
+    EXPECT_EQ(rows[k][2], run.column("observables", "tip_x")[k]);
+    EXPECT_EQ(rows[k][4], run.column("observables", "path_length")[k]);
+    EXPECT_EQ(rows[k][6], run.column("observables", "impact_speed")[k]);
+    EXPECT_EQ(rows[k][8], run.column("observables", "current_in")[k]);
+    EXPECT_EQ(rows[k][10], run.column("observables", "aperture")[k]);
+    EXPECT_EQ(rows[k][11], run.column("observables", "evaluations")[k]);
   }
 }
 
@@ -81,31 +81,39 @@ TEST_F(Export, beads_have_the_documented_columns_and_keep_every_bit) {
             "bead,x_m,y_m,z_m,vx_m_s,vy_m_s,vz_m_s,stress_pa,radius_m,volume_m3,mass_kg,"
             "charge_c,landed,embryo");
   const Frame f = run.frame(4);
-  ASSERT_EQ(rows.size(), f.beads());
+  ASSERT_EQ(rows.size(), f.rows());
   for (std::size_t k = 0; k < rows.size(); ++k) {
     const std::vector<double> expected = {static_cast<double>(k),
-                                          f.x[k],
-                                          f.y[k],
-                                          f.z[k],
-                                          f.vx[k],
-                                          f.vy[k],
-                                          f.vz[k],
-                                          f.stress[k],
-                                          f.radius[k],
-                                          f.volume[k],
-                                          f.mass[k],
-                                          f.charge[k],
-                                          static_cast<double>(f.landed[k]),
-                                          static_cast<double>(f.embryo[k])};
+                                          f["x"][k],
+                                          f["y"][k],
+                                          f["z"][k],
+                                          f["vx"][k],
+                                          f["vy"][k],
+                                          f["vz"][k],
+                                          f["stress"][k],
+                                          f["radius"][k],
+                                          f["volume"][k],
+                                          f["mass"][k],
+                                          f["charge"][k],
+                                          f["landed"][k],
+                                          f["embryo"][k]};
     EXPECT_EQ(rows[k], expected);
   }
+}
+
+TEST_F(Export, beads_of_a_run_without_stress_have_zeros) {
+  write_run(folder_ / "inviscid.h5", 3, false);
+  const RunReader run(folder_ / "inviscid.h5");
+  const auto rows = csv(folder_, [&](TextOutput& to) { export_beads(run, {}, to); }).second;
+  ASSERT_EQ(rows.size(), run.frame(2).rows());
+  for (const auto& row : rows) EXPECT_EQ(row.at(7), 0);
 }
 
 TEST_F(Export, beads_are_those_of_the_last_frame_unless_a_time_is_given) {
   const RunReader run(folder_ / "run.h5");
   const auto rows = csv(folder_, [&](TextOutput& to) { export_beads(run, {}, to); }).second;
-  EXPECT_EQ(rows.size(), run.frame(8).beads());
-  EXPECT_EQ(rows[1][1], run.frame(8).x[1]);
+  EXPECT_EQ(rows.size(), run.frame(8).rows());
+  EXPECT_EQ(rows[1][1], run.frame(8)["x"][1]);
 }
 
 TEST_F(Export, deposit_has_the_documented_columns_and_keeps_every_bit) {
@@ -136,24 +144,24 @@ TEST_F(Export, xyz_has_each_frame_with_its_count_its_time_and_its_species) {
   std::size_t line = 0;
   for (std::size_t k = 0; k < 9; ++k) {
     const Frame f = run.frame(k);
-    EXPECT_EQ(lines.at(line), std::to_string(f.beads()));
+    EXPECT_EQ(lines.at(line), std::to_string(f.rows()));
     EXPECT_TRUE(lines.at(line + 1).starts_with(
         "Properties=species:S:1:pos:R:3:velo:R:3:radius:R:1:stress:R:1:charge:R:1 Time="));
     const std::string time = lines[line + 1].substr(lines[line + 1].find("Time=") + 5);
     EXPECT_EQ(std::strtod(time.c_str(), nullptr), f.time);
-    for (std::size_t b = 0; b < f.beads(); ++b) {
+    for (std::size_t b = 0; b < f.rows(); ++b) {
       const std::string& row = lines.at(line + 2 + b);
-      const char kind = b == 0             ? 'N'
-                        : f.embryo[b] != 0 ? 'E'
-                        : f.landed[b] != 0 ? 'L'
-                                           : 'B';
+      const char kind = b == 0                ? 'N'
+                        : f["embryo"][b] != 0 ? 'E'
+                        : f["landed"][b] != 0 ? 'L'
+                                              : 'B';
       EXPECT_EQ(row[0], kind);
-      const std::vector<double> expected = {f.x[b],      f.y[b],      f.z[b],
-                                            f.vx[b],     f.vy[b],     f.vz[b],
-                                            f.radius[b], f.stress[b], f.charge[b]};
+      const std::vector<double> expected = {f["x"][b],      f["y"][b],      f["z"][b],
+                                            f["vx"][b],     f["vy"][b],     f["vz"][b],
+                                            f["radius"][b], f["stress"][b], f["charge"][b]};
       EXPECT_EQ(numbers_in(row.substr(2), ' '), expected);
     }
-    line += 2 + f.beads();
+    line += 2 + f.rows();
   }
   EXPECT_EQ(line, lines.size());
 }
@@ -162,7 +170,7 @@ TEST_F(Export, xyz_at_a_time_is_one_frame) {
   const RunReader run(folder_ / "run.h5");
   TextOutput output(folder_ / "run.xyz", false);
   export_xyz(run, 5e-5, output);
-  EXPECT_EQ(lines_of(text_of(folder_ / "run.xyz")).size(), 2 + run.frame(5).beads());
+  EXPECT_EQ(lines_of(text_of(folder_ / "run.xyz")).size(), 2 + run.frame(5).rows());
 }
 
 // The numbers of a DataArray: base64 of their size in bytes and the bytes.
@@ -197,26 +205,26 @@ TEST_F(Export, vtk_has_one_poly_line_per_frame_that_keeps_every_bit) {
     EXPECT_NE(pvd.find("file=\"" + name + "\""), std::string::npos);
     const std::string vtp = text_of(folder_ / name);
     const Frame f = run.frame(k);
-    EXPECT_NE(vtp.find("NumberOfPoints=\"" + std::to_string(f.beads()) + "\""),
+    EXPECT_NE(vtp.find("NumberOfPoints=\"" + std::to_string(f.rows()) + "\""),
               std::string::npos);
     EXPECT_EQ(data_array<double>(vtp, "TimeValue"), std::vector<double>{f.time});
-    EXPECT_EQ(data_array<double>(vtp, "radius"), f.radius);
-    EXPECT_EQ(data_array<double>(vtp, "stress"), f.stress);
-    EXPECT_EQ(data_array<double>(vtp, "charge"), f.charge);
+    EXPECT_EQ(data_array<double>(vtp, "radius"), f["radius"]);
+    EXPECT_EQ(data_array<double>(vtp, "stress"), f["stress"]);
+    EXPECT_EQ(data_array<double>(vtp, "charge"), f["charge"]);
     const auto points = data_array<double>(vtp, "Points"),
                velocity = data_array<double>(vtp, "velocity");
     const auto connectivity = data_array<std::int64_t>(vtp, "connectivity");
-    ASSERT_EQ(points.size(), 3 * f.beads());
-    ASSERT_EQ(velocity.size(), 3 * f.beads());
-    ASSERT_EQ(connectivity.size(), f.beads());
-    for (std::size_t b = 0; b < f.beads(); ++b) {
+    ASSERT_EQ(points.size(), 3 * f.rows());
+    ASSERT_EQ(velocity.size(), 3 * f.rows());
+    ASSERT_EQ(connectivity.size(), f.rows());
+    for (std::size_t b = 0; b < f.rows(); ++b) {
       EXPECT_EQ(connectivity[b], static_cast<std::int64_t>(b));
-      EXPECT_EQ(points[3 * b], f.x[b]);
-      EXPECT_EQ(points[3 * b + 2], f.z[b]);
-      EXPECT_EQ(velocity[3 * b + 1], f.vy[b]);
+      EXPECT_EQ(points[3 * b], f["x"][b]);
+      EXPECT_EQ(points[3 * b + 2], f["z"][b]);
+      EXPECT_EQ(velocity[3 * b + 1], f["vy"][b]);
     }
     EXPECT_EQ(data_array<std::int64_t>(vtp, "offsets"),
-              std::vector<std::int64_t>{static_cast<std::int64_t>(f.beads())});
+              std::vector<std::int64_t>{static_cast<std::int64_t>(f.rows())});
   }
 }
 
@@ -242,7 +250,10 @@ TEST_F(Export, an_existing_file_is_overwritten_only_on_demand) {
 }
 
 TEST_F(Export, a_part_that_is_absent_is_named_with_its_remedy_and_nothing_is_written) {
-  { const RunFile bare(folder_ / "bare.h5", false, {}, 1); }
+  {
+    const auto bare =
+        std::make_shared<RunFile>(folder_ / "bare.h5", false, Provenance{}, 1);
+  }
   const RunReader run(folder_ / "bare.h5");
   try {
     TextOutput output(folder_ / "out.csv", false);

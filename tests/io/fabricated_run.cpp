@@ -58,9 +58,9 @@ DepositedBead fabricated_deposit(std::uint64_t k) {
 }
 
 void write_run(const std::filesystem::path& path, std::size_t frames, bool with_stress) {
-  RunFile file(path, false, fabricated_provenance(), 1e9);
-  const auto observables = file.observables(1e-5), deposit = file.deposit();
-  const auto shown = file.frames(1e-5, with_stress);
+  const auto file = std::make_shared<RunFile>(path, false, fabricated_provenance(), 1e9);
+  const auto observables = record_observables(file, 1e-5), deposit = record_deposit(file);
+  const auto shown = record_frames(file, 1e-5, with_stress);
   FabricatedJet jet;
   for (std::size_t k = 0; k < frames; ++k) {
     jet = fabricated_jet(k, with_stress);
@@ -68,26 +68,27 @@ void write_run(const std::filesystem::path& path, std::size_t frames, bool with_
     shown->observe(jet.snapshot());
     deposit->deposit(fabricated_deposit(k));
   }
-  file.finish("complete", "all is well", jet.statistics, jet.ledger);
+  file->finish("complete", "all is well", jet.statistics, jet.ledger);
 }
 
 void expect_intact(const RunReader& run, std::uint64_t flushed) {
   EXPECT_EQ(run.scene_resolved(), "resolved = 1\n");
-  const std::size_t frames = run.has_frames() ? run.frame_times().size() : 0;
+  const std::size_t frames = run.has("frames") ? run.frame_times().size() : 0;
   ASSERT_GE(frames, flushed);
   for (std::size_t k = 0; k < frames; ++k) {
     const FabricatedJet made = fabricated_jet(k);
     const Frame read = run.frame(k);
     const auto velocity = made.snapshot().columns.velocity();
     ASSERT_EQ(read.time, made.time);
-    ASSERT_EQ(read.vz, std::vector<double>(velocity.z.begin(), velocity.z.end()));
-    ASSERT_EQ(read.charge, made.jet.charge);
+    ASSERT_EQ(read["vz"], std::vector<double>(velocity.z.begin(), velocity.z.end()));
+    ASSERT_EQ(read["charge"], made.jet.charge);
   }
-  ASSERT_GE(run.has_observables() ? run.observable("evaluations").size() : 0, flushed);
-  const DepositTable deposit = run.has_deposit() ? run.deposit() : DepositTable{};
-  ASSERT_GE(deposit.beads(), flushed);
-  for (std::size_t k = 0; k < deposit.beads(); ++k) {
-    ASSERT_EQ(deposit.volume[k], fabricated_deposit(k).bead.volume);
+  ASSERT_GE(run.has("observables") ? run.column("observables", "evaluations").size() : 0,
+            flushed);
+  const RunTable deposit = run.has("deposit") ? run.table("deposit") : RunTable{};
+  ASSERT_GE(deposit.rows(), flushed);
+  for (std::size_t k = 0; k < deposit.rows(); ++k) {
+    ASSERT_EQ(deposit["volume"][k], fabricated_deposit(k).bead.volume);
   }
 }
 

@@ -1,9 +1,10 @@
 #pragma once
 
-#include "ehdjet/io/run_file.hpp"
-#include "ehdjet/io/run_reader.hpp"
+#include "ehdjet/io/records.hpp"
 #include "ehdjet/jet/jet_state.hpp"
-#include "ehdjet/simulation/observer.hpp"
+#include "ehdjet/observers/observer.hpp"
+#include "ehdjet/run_files/run_file.hpp"
+#include "ehdjet/run_files/run_reader.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,7 @@
 #include "ehdjet/core/error.hpp"
 #include "ehdjet/io/plot_page.hpp"
-#include "ehdjet/io/run_file.hpp"
+#include "ehdjet/io/records.hpp"
+#include "ehdjet/run_files/run_file.hpp"
 
 #include <gtest/gtest.h>
 
@@ -22,12 +23,14 @@ bool contains(const std::string& text, const std::string& part) {
 TEST(PlotPage, shows_the_parts_that_there_are) {
   const ScratchFolder folder;
   {
-    RunFile file(folder / "frames.h5", false, {}, 1);
-    file.frames(1, true)->observe(fabricated_jet(7).snapshot());
+    const auto file =
+        std::make_shared<RunFile>(folder / "frames.h5", false, Provenance{}, 1);
+    record_frames(file, 1, true)->observe(fabricated_jet(7).snapshot());
   }
   {
-    RunFile file(folder / "observables.h5", false, {}, 1);
-    file.observables(1)->observe(fabricated_jet(7).snapshot());
+    const auto file =
+        std::make_shared<RunFile>(folder / "observables.h5", false, Provenance{}, 1);
+    record_observables(file, 1)->observe(fabricated_jet(7).snapshot());
   }
   const std::string frames = plot_page(RunReader(folder / "frames.h5"), {}, "page.png");
   EXPECT_TRUE(contains(frames, "Side view"));
@@ -40,7 +43,9 @@ TEST(PlotPage, shows_the_parts_that_there_are) {
 
 TEST(PlotPage, needs_something_to_draw_and_a_format_it_knows) {
   const ScratchFolder folder;
-  { const RunFile bare(folder / "bare.h5", false, {}, 1); }
+  {
+    const auto bare = std::make_shared<RunFile>(folder / "bare.h5", false, Provenance{}, 1);
+  }
   EXPECT_THROW(static_cast<void>(plot_page(RunReader(folder / "bare.h5"), {}, "page.png")),
                InputError);
   write_run(folder / "run.h5", 3);

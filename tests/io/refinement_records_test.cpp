@@ -1,10 +1,12 @@
 #include "ehdjet/core/error.hpp"
 #include "ehdjet/io/export.hpp"
-#include "ehdjet/io/run_file.hpp"
+#include "ehdjet/io/records.hpp"
+#include "ehdjet/run_files/run_file.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -32,33 +34,34 @@ TEST(RefinementRecords, come_back_as_they_were_written) {
   for (const bool with_coulomb : {false, true}) {
     const ScratchFolder folder;
     {
-      RunFile file(folder / "run.h5", false, fabricated_provenance(), 1e9);
-      const auto observer = file.refinements(with_coulomb);
+      const auto file =
+          std::make_shared<RunFile>(folder / "run.h5", false, fabricated_provenance(), 1e9);
+      const auto observer = record_refinements(file, with_coulomb);
       for (int i = 1; i <= 300; ++i) observer->refined(record(i)); // more than one chunk
       RunStatistics statistics;
       statistics.refinements = 300;
-      file.finish("complete", "", statistics, {});
+      file->finish("complete", "", statistics, {});
     }
     const RunReader run(folder / "run.h5");
-    ASSERT_TRUE(run.has_refinements());
-    EXPECT_FALSE(run.has_resolving_power());
-    const RefinementTable t = run.refinements();
-    ASSERT_EQ(t.time.size(), 300U);
+    ASSERT_TRUE(run.has("refinements"));
+    EXPECT_FALSE(run.has("resolving_power"));
+    const RunTable t = run.table("refinements");
+    ASSERT_EQ(t.rows(), 300U);
     const RefinementRecord last = record(300);
-    EXPECT_EQ(t.time.back(), last.time);
-    EXPECT_EQ(t.kept.back(), 320);
-    EXPECT_EQ(t.beads_before.back(), 400);
-    EXPECT_EQ(t.beads_after.back(), 500);
-    EXPECT_EQ(t.mass.back(), last.change.mass);
-    EXPECT_EQ(t.charge.back(), last.change.charge);
-    EXPECT_EQ(t.volume.back(), last.change.volume);
-    EXPECT_EQ(t.px.back(), last.change.momentum.x());
-    EXPECT_EQ(t.py.back(), last.change.momentum.y());
-    EXPECT_EQ(t.pz.back(), last.change.momentum.z());
-    EXPECT_EQ(t.kinetic_energy.back(), last.change.kinetic_energy);
-    EXPECT_EQ(t.elastic_energy.back(), last.change.elastic_energy);
-    EXPECT_EQ(t.worst_link.back(), last.worst_link);
-    EXPECT_EQ(t.coulomb_energy.size(), with_coulomb ? 300U : 0U);
+    EXPECT_EQ(t["time"].back(), last.time);
+    EXPECT_EQ(t["kept"].back(), 320);
+    EXPECT_EQ(t["beads_before"].back(), 400);
+    EXPECT_EQ(t["beads_after"].back(), 500);
+    EXPECT_EQ(t["mass_change"].back(), last.change.mass);
+    EXPECT_EQ(t["charge_change"].back(), last.change.charge);
+    EXPECT_EQ(t["volume_change"].back(), last.change.volume);
+    EXPECT_EQ(t["momentum_change_x"].back(), last.change.momentum.x());
+    EXPECT_EQ(t["momentum_change_y"].back(), last.change.momentum.y());
+    EXPECT_EQ(t["momentum_change_z"].back(), last.change.momentum.z());
+    EXPECT_EQ(t["kinetic_energy_change"].back(), last.change.kinetic_energy);
+    EXPECT_EQ(t["elastic_energy_change"].back(), last.change.elastic_energy);
+    EXPECT_EQ(t["worst_link"].back(), last.worst_link);
+    EXPECT_EQ(t.find("coulomb_energy_change") != nullptr, with_coulomb);
 
     TextOutput output(folder / "out.csv", false);
     export_refinements(run, output);
@@ -74,7 +77,7 @@ TEST(RefinementRecords, are_missed_with_the_key_that_asks_for_them) {
   write_run(folder / "run.h5", 1);
   const RunReader run(folder / "run.h5");
   try {
-    (void)run.refinements();
+    (void)run.table("refinements");
     FAIL();
   } catch (const InputError& e) {
     EXPECT_NE(std::string(e.what()).find("output.refinements"), std::string::npos);
@@ -96,25 +99,29 @@ private:
 
 TEST(AccountBook, keeps_columns_in_their_order_with_their_units) {
   const ScratchFolder folder;
-  MadeUp accounts;
+  const auto accounts = std::make_shared<MadeUp>();
   {
-    RunFile file(folder / "run.h5", false, fabricated_provenance(), 1e9);
-    const auto observer = file.budget(0.5, accounts);
+    const auto file =
+        std::make_shared<RunFile>(folder / "run.h5", false, fabricated_provenance(), 1e9);
+    const auto observer = record_budget(file, 0.5, accounts);
     for (int i = 0; i < 3; ++i) {
       EXPECT_EQ(observer->next_time(), 0.5 * i);
       FabricatedJet made;
       made.time = 0.5 * i;
       observer->observe(made.snapshot());
     }
-    file.finish("complete", "", {}, {});
+    file->finish("complete", "", {}, {});
   }
   const RunReader run(folder / "run.h5");
-  ASSERT_TRUE(run.has_budget());
-  const BudgetTable t = run.budget();
-  EXPECT_EQ(t.time, (std::vector<double>{0, 0.5, 1}));
-  EXPECT_EQ(t.names, (std::vector<std::string>{"work", "impulse"}));
-  EXPECT_EQ(t.units, (std::vector<std::string>{"J", "kg m/s"}));
-  EXPECT_EQ(t.columns[0], (std::vector<double>{0, 1, 2}));
+  ASSERT_TRUE(run.has("budget"));
+  const RunTable t = run.table("budget");
+  EXPECT_EQ(t["time"], (std::vector<double>{0, 0.5, 1}));
+  std::vector<std::string> names, units;
+  for (const RunTable::Column& c : t.columns)
+    names.push_back(c.name), units.push_back(c.unit);
+  EXPECT_EQ(names, (std::vector<std::string>{"time", "work", "impulse"}));
+  EXPECT_EQ(units, (std::vector<std::string>{"s", "J", "kg m/s"}));
+  EXPECT_EQ(t["work"], (std::vector<double>{0, 1, 2}));
   TextOutput output(folder / "out.csv", false);
   export_budget(run, output);
   EXPECT_EQ(text_of(folder / "out.csv"),
@@ -137,13 +144,14 @@ TEST(ResolvingPower, is_that_of_the_link_at_each_lambda_averaged_over_the_later_
   const ScratchFolder folder;
   constexpr double l = 2e-4;
   {
-    RunFile file(folder / "run.h5", false, fabricated_provenance(), 1e9);
-    const auto observer = file.resolving_power(1e-3, l);
+    const auto file =
+        std::make_shared<RunFile>(folder / "run.h5", false, fabricated_provenance(), 1e9);
+    const auto observer = record_resolving_power(file, 1e-3, l);
     for (int i = 0; i <= 10; ++i) { // the first half is to be ignored
       const double unit = i < 5 ? 1e-5 : i % 2 == 0 ? l : 2 * l;
       observer->observe(straight_jet(4, unit, 1e-3 * i).snapshot());
     }
-    file.finish("complete", "", {}, {});
+    file->finish("complete", "", {}, {});
   }
   const RunReader run(folder / "run.h5");
   const ResolvingPowerTable t = run.resolving_power();
@@ -182,12 +190,13 @@ TEST(ResolvingPower, takes_the_link_across_an_embryo_as_one) {
   const ScratchFolder folder;
   constexpr double l = 1e-3;
   {
-    RunFile file(folder / "run.h5", false, fabricated_provenance(), 1e9);
-    const auto observer = file.resolving_power(1, l);
+    const auto file =
+        std::make_shared<RunFile>(folder / "run.h5", false, fabricated_provenance(), 1e9);
+    const auto observer = record_resolving_power(file, 1, l);
     FabricatedJet made = straight_jet(3, l, 0); // beads at 0, 1, 3, 6 l
     made.jet.has_embryo = true;
     observer->observe(made.snapshot());
-    file.finish("complete", "", {}, {});
+    file->finish("complete", "", {}, {});
   }
   const ResolvingPowerTable t = RunReader(folder / "run.h5").resolving_power();
   EXPECT_DOUBLE_EQ(t.r[0], 1.0 / 3);

@@ -1,6 +1,7 @@
 #include "ehdjet/core/error.hpp"
-#include "ehdjet/io/run_file.hpp"
-#include "ehdjet/io/run_reader.hpp"
+#include "ehdjet/io/records.hpp"
+#include "ehdjet/run_files/run_file.hpp"
+#include "ehdjet/run_files/run_reader.hpp"
 
 #include <gtest/gtest.h>
 #include <hdf5.h>
@@ -67,8 +68,8 @@ TEST(RunReader, rejects_a_file_of_a_later_format) {
 TEST(RunReader, takes_the_nearest_frame_and_of_two_the_earlier) {
   const ScratchFolder folder;
   {
-    RunFile file(folder / "run.h5", false, {}, 1);
-    const auto shown = file.frames(0.25, true);
+    const auto file = std::make_shared<RunFile>(folder / "run.h5", false, Provenance{}, 1);
+    const auto shown = record_frames(file, 0.25, true);
     for (const double time :
          {0., 0.25, 0.5, 0.75}) { // exact in binary, so that ties are ties
       FabricatedJet jet = fabricated_jet(3);
@@ -87,8 +88,8 @@ TEST(RunReader, takes_the_nearest_frame_and_of_two_the_earlier) {
 
 TEST(RunReader, a_run_without_a_frame_yet_has_no_nearest_one) {
   const ScratchFolder folder;
-  RunFile file(folder / "run.h5", false, {}, 1);
-  const auto shown = file.frames(1, true);
+  const auto file = std::make_shared<RunFile>(folder / "run.h5", false, Provenance{}, 1);
+  const auto shown = record_frames(file, 1, true);
   const RunReader run(folder / "run.h5");
   EXPECT_TRUE(run.frame_times().empty());
   EXPECT_THROW(static_cast<void>(run.nearest_frame(0)), InputError);

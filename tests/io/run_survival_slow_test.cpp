@@ -1,6 +1,7 @@
 #include "ehdjet/core/error.hpp"
-#include "ehdjet/io/run_file.hpp"
-#include "ehdjet/io/run_reader.hpp"
+#include "ehdjet/io/records.hpp"
+#include "ehdjet/run_files/run_file.hpp"
+#include "ehdjet/run_files/run_reader.hpp"
 
 #include <gtest/gtest.h>
 
@@ -70,7 +71,7 @@ void die_within_every_write(const std::filesystem::path& path, Check&& check,
 TEST(RunSurvival, dying_within_any_write_of_a_small_run_keeps_the_last_flush) {
   const ScratchFolder folder;
   const auto path = folder / "run.h5";
-  RunFile file(path, false, fabricated_provenance(), 1e9);
+  const auto file = std::make_shared<RunFile>(path, false, fabricated_provenance(), 1e9);
   std::unique_ptr<Observer> frames, deposit, observables;
   std::uint64_t written = 0, flushed = 0;
   const auto check = [&] {
@@ -79,9 +80,10 @@ TEST(RunSurvival, dying_within_any_write_of_a_small_run_keeps_the_last_flush) {
     EXPECT_EQ(run.message(), "");
     expect_intact(run, flushed);
   };
-  die_within_every_write(path, check, [&] { frames = file.frames(1e-5, true); });
-  die_within_every_write(path, check, [&] { deposit = file.deposit(); });
-  die_within_every_write(path, check, [&] { observables = file.observables(1e-5); });
+  die_within_every_write(path, check, [&] { frames = record_frames(file, 1e-5, true); });
+  die_within_every_write(path, check, [&] { deposit = record_deposit(file); });
+  die_within_every_write(path, check,
+                         [&] { observables = record_observables(file, 1e-5); });
   for (const std::uint64_t more : {4U, 20U}) {
     for (; written < flushed + more; ++written) {
       const FabricatedJet jet = fabricated_jet(written);
@@ -89,17 +91,17 @@ TEST(RunSurvival, dying_within_any_write_of_a_small_run_keeps_the_last_flush) {
       deposit->deposit(fabricated_deposit(written));
       frames->observe(jet.snapshot());
     }
-    die_within_every_write(path, check, [&] { file.flush(); });
+    die_within_every_write(path, check, [&] { file->flush(); });
     flushed = written;
   }
-  die_within_every_write(path, check, [&] { file.finish("complete", "", {}, {}); });
+  die_within_every_write(path, check, [&] { file->finish("complete", "", {}, {}); });
 }
 
 TEST(RunSurvival, dying_while_the_chunk_index_is_split_keeps_the_last_flush) {
   const ScratchFolder folder;
   const auto path = folder / "run.h5";
-  RunFile file(path, false, fabricated_provenance(), 1e9);
-  const auto frames = file.frames(1e-5, true);
+  const auto file = std::make_shared<RunFile>(path, false, fabricated_provenance(), 1e9);
+  const auto frames = record_frames(file, 1e-5, true);
   FabricatedJet jet;
   jet.jet.mass = jet.jet.charge = jet.jet.volume =
       std::vector<double>(4096, 1); // beads of one chunk
@@ -108,7 +110,7 @@ TEST(RunSurvival, dying_while_the_chunk_index_is_split_keeps_the_last_flush) {
     const RunReader run(path);
     ASSERT_GE(run.frame_times().size(), flushed);
     for (const std::size_t k : {std::size_t{0}, flushed / 2, flushed - 1}) {
-      ASSERT_EQ(run.frame(k).y, std::vector<double>(4096, static_cast<double>(k)));
+      ASSERT_EQ(run.frame(k)["y"], std::vector<double>(4096, static_cast<double>(k)));
     }
   };
   std::size_t written = 0;
@@ -124,9 +126,9 @@ TEST(RunSurvival, dying_while_the_chunk_index_is_split_keeps_the_last_flush) {
     write_until(chunks);
     SCOPED_TRACE("chunk " + std::to_string(chunks));
     if (flushed == 0) {
-      file.flush();
+      file->flush();
     } else {
-      die_within_every_write(path, check, [&] { file.flush(); });
+      die_within_every_write(path, check, [&] { file->flush(); });
     }
     flushed = chunks;
   }
@@ -135,8 +137,8 @@ TEST(RunSurvival, dying_while_the_chunk_index_is_split_keeps_the_last_flush) {
 TEST(RunSurvival, dying_while_a_checkpoint_is_written_keeps_the_last_one_or_has_the_next) {
   const ScratchFolder folder;
   const auto path = folder / "run.h5";
-  RunFile file(path, false, fabricated_provenance(), 1e9);
-  const auto frames = file.frames(1e-5, true);
+  const auto file = std::make_shared<RunFile>(path, false, fabricated_provenance(), 1e9);
+  const auto frames = record_frames(file, 1e-5, true);
   for (std::uint64_t k = 0; k < 5; ++k) {
     SCOPED_TRACE("checkpoint " + std::to_string(k));
     frames->observe(fabricated_jet(k).snapshot());
@@ -150,7 +152,7 @@ TEST(RunSurvival, dying_while_a_checkpoint_is_written_keeps_the_last_one_or_has_
         EXPECT_EQ(k, 0U) << e.what();
       }
     };
-    die_within_every_write(path, check, [&] { file.keep(fabricated_checkpoint(k)); });
+    die_within_every_write(path, check, [&] { file->keep(fabricated_checkpoint(k)); });
     EXPECT_EQ(RunReader(path).checkpoint(), fabricated_checkpoint(k));
   }
 }

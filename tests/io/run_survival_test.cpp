@@ -1,6 +1,7 @@
 #include "ehdjet/core/error.hpp"
-#include "ehdjet/io/run_file.hpp"
-#include "ehdjet/io/run_reader.hpp"
+#include "ehdjet/io/records.hpp"
+#include "ehdjet/run_files/run_file.hpp"
+#include "ehdjet/run_files/run_reader.hpp"
 
 #include <gtest/gtest.h>
 
@@ -40,9 +41,9 @@ private:
 // Writes a frame, a row and a deposited bead at a time and flushes each, until it is killed.
 [[noreturn]] void write_for_ever(const std::filesystem::path& path,
                                  SharedCount::Count& flushed) {
-  RunFile file(path, true, fabricated_provenance(), 0);
-  const auto observables = file.observables(1e-5), deposit = file.deposit();
-  const auto shown = file.frames(1e-5, true);
+  const auto file = std::make_shared<RunFile>(path, true, fabricated_provenance(), 0);
+  const auto observables = record_observables(file, 1e-5), deposit = record_deposit(file);
+  const auto shown = record_frames(file, 1e-5, true);
   for (std::uint64_t k = 0;; ++k) {
     const FabricatedJet jet = fabricated_jet(k);
     observables->observe(jet.snapshot());
@@ -103,9 +104,10 @@ TEST(RunSurvival, a_full_disk_ends_the_run_and_leaves_the_last_flush) {
   std::uint64_t flushed = 0;
   {
     const ShortFiles limit(600 * 1024);
-    RunFile file(folder / "run.h5", false, fabricated_provenance(), 1e9);
-    const auto observables = file.observables(1e-5), deposit = file.deposit();
-    const auto shown = file.frames(1e-5, true);
+    const auto file =
+        std::make_shared<RunFile>(folder / "run.h5", false, fabricated_provenance(), 1e9);
+    const auto observables = record_observables(file, 1e-5), deposit = record_deposit(file);
+    const auto shown = record_frames(file, 1e-5, true);
     FabricatedJet jet;
     std::string message;
     for (std::uint64_t k = 0; message.empty() && k < 100000; ++k) {
@@ -115,7 +117,7 @@ TEST(RunSurvival, a_full_disk_ends_the_run_and_leaves_the_last_flush) {
         deposit->deposit(fabricated_deposit(k));
         shown->observe(jet.snapshot());
         if (k % 10 != 9) continue;
-        file.flush();
+        file->flush();
         flushed = k + 1;
       } catch (const RunError& error) {
         message = error.what();
@@ -124,8 +126,8 @@ TEST(RunSurvival, a_full_disk_ends_the_run_and_leaves_the_last_flush) {
     EXPECT_EQ(message, "cannot write " + (folder / "run.h5").string()
                            + ": File too large. It is readable up to the last flush");
     EXPECT_THROW(shown->observe(jet.snapshot()), RunError);
-    EXPECT_THROW(file.flush(), RunError);
-    file.finish("failed", message, jet.statistics, jet.ledger);
+    EXPECT_THROW(file->flush(), RunError);
+    file->finish("failed", message, jet.statistics, jet.ledger);
   }
   const RunReader run(folder / "run.h5");
   EXPECT_EQ(run.status(), "failed");
@@ -133,7 +135,7 @@ TEST(RunSurvival, a_full_disk_ends_the_run_and_leaves_the_last_flush) {
   ASSERT_EQ(run.frame_times().size(), flushed);
   EXPECT_GT(flushed, 0U);
   for (std::size_t k = 0; k < flushed; ++k)
-    EXPECT_EQ(run.frame(k).charge, fabricated_jet(k).jet.charge);
+    EXPECT_EQ(run.frame(k)["charge"], fabricated_jet(k).jet.charge);
 }
 
 TEST(RunSurvival, a_disk_that_is_full_from_the_start_leaves_no_file) {

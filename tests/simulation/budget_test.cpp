@@ -258,13 +258,12 @@ TEST(Budget, has_columns_for_a_force_and_an_event_of_another_program_and_closes)
 // ---- against an independent computation -------------------------------------------------------
 
 /// Compares, at several times of a run, energies, flows and what events bring in.
-class Comparison final : public StepObserver {
+class Comparison final : public Observer {
 public:
   Comparison(const Scene& scene, const Simulation& simulation)
       : independent_(scene)
       , balance_(simulation.dynamics(), simulation.events()) {}
-  void begin_step(const DenseStep&, std::span<const std::unique_ptr<Event>>) override {}
-  void end_step(double, double) override {}
+  [[nodiscard]] Interest interest() const override { return {.steps_and_events = true}; }
   void before_event(const Event&, const JetState& jet) override { before_ = jet; }
   void after_event(const Event& event, const JetState& jet) override {
     const auto total = [this](const JetState& j) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <string>
@@ -20,6 +21,17 @@ namespace {
 
 using namespace test;
 
+class OnCheckpoint final : public Observer {
+public:
+  using Keep = std::function<void(const Checkpoint&)>;
+  explicit OnCheckpoint(Keep keep)
+      : keep_(std::move(keep)) {}
+  void checkpoint(const Checkpoint& c) override { keep_(c); }
+
+private:
+  Keep keep_;
+};
+
 /// A run with its checkpoints and what it was then.
 struct CheckedRun {
   struct Moment {
@@ -29,10 +41,11 @@ struct CheckedRun {
   };
   CheckedRun(const Scene& scene, double interval)
       : simulation(build_simulation(scene)) {
-    simulation->make_checkpoints(interval, [this](const Checkpoint& c) {
+    simulation->make_checkpoints(interval);
+    simulation->add(std::make_unique<OnCheckpoint>([this](const Checkpoint& c) {
       checkpoints.push_back(c);
       moments.push_back(moment_of(*simulation));
-    });
+    }));
   }
   static Moment moment_of(const Simulation& s) {
     return {s.jet(), s.ledger(), s.statistics()};
@@ -370,7 +383,7 @@ bool matters(const Scene& scene, double end_time, double interval, const std::st
   for (Checkpoint c : whole.checkpoints) {
     c.at(name) = fresh;
     const auto rest = build_simulation(scene);
-    rest->make_checkpoints(interval, [](const Checkpoint&) {});
+    rest->make_checkpoints(interval);
     rest->restore(c);
     rest->run_until(end_time);
     if (rest->jet().y != whole.simulation->jet().y
@@ -392,9 +405,10 @@ TEST(Checkpoint, keeps_the_round_off_of_the_time) {
   const Checkpoint& last = whole.checkpoints.back();
   rest->restore(last);
   Checkpoint again;
-  rest->make_checkpoints(1e-9, [&](const Checkpoint& c) {
+  rest->make_checkpoints(1e-9);
+  rest->add(std::make_unique<OnCheckpoint>([&](const Checkpoint& c) {
     if (again.empty()) again = c;
-  });
+  }));
   rest->run_until(1e-4);
   CompensatedSum time(last.at("time").at(0), last.at("time").at(1));
   time += 1e-6;

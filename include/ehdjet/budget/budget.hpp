@@ -4,7 +4,7 @@
 #include "ehdjet/core/compensated_sum.hpp"
 #include "ehdjet/events/dense_step.hpp"
 #include "ehdjet/events/event.hpp"
-#include "ehdjet/simulation/observer.hpp"
+#include "ehdjet/observers/observer.hpp"
 
 #include <memory>
 #include <optional>
@@ -25,11 +25,12 @@ namespace ehdjet {
 ///
 /// The jet is the same with or without it, bit for bit. Does not survive a change of the jet
 /// other than by the simulation it is added to.
-class Budget final : public StepObserver, public Accounts {
+class Budget final : public Observer, public Accounts {
 public:
   /// Of a simulation with these equations of motion and events; both outlive the budget.
   Budget(const JetDynamics& dynamics, std::span<const std::unique_ptr<Event>> events);
 
+  [[nodiscard]] Interest interest() const override { return {.steps_and_events = true}; }
   void begin_step(const DenseStep& step,
                   std::span<const std::unique_ptr<Event>> events) override;
   void end_step(double t, double theta) override;

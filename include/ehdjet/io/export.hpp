@@ -1,7 +1,7 @@
 #pragma once
 
-#include "ehdjet/io/run_reader.hpp"
 #include "ehdjet/io/text_output.hpp"
+#include "ehdjet/run_files/run_reader.hpp"
 
 #include <filesystem>
 #include <optional>

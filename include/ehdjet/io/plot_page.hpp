@@ -1,6 +1,6 @@
 #pragma once
 
-#include "ehdjet/io/run_reader.hpp"
+#include "ehdjet/run_files/run_reader.hpp"
 
 #include <filesystem>
 #include <optional>

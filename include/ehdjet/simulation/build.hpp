@@ -6,15 +6,24 @@
 #include "ehdjet/simulation/simulation.hpp"
 
 #include <memory>
+#include <vector>
 
 namespace ehdjet {
 
+/// What a program adds to a scene: terms of the equations of motion, events, which come after those
+/// of the scene at the same instant, and observers.
+struct Extras {
+  std::vector<std::unique_ptr<ForceTerm>> forces;
+  std::vector<std::unique_ptr<Event>> events;
+  std::vector<std::shared_ptr<Observer>> observers;
+};
+
 /// Composes a simulation from a scene: the only place that asks what a scene has. From then on
 /// presence is structure: a term, event or column that the scene does not name does not exist.
-/// Observers are added by the caller.
+/// What writes files is added by `run_scene` (runs/run_scene.hpp).
 ///
 /// errors : InputError for names that no solver or method has
-std::unique_ptr<Simulation> build_simulation(const Scene& scene);
+std::unique_ptr<Simulation> build_simulation(const Scene& scene, Extras extras = {});
 
 /// The right-hand side alone.
 std::unique_ptr<JetDynamics> build_dynamics(const Scene& scene);

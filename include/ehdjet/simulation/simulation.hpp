@@ -6,7 +6,7 @@
 #include "ehdjet/events/event.hpp"
 #include "ehdjet/integrators/integrator.hpp"
 #include "ehdjet/integrators/step_size_control.hpp"
-#include "ehdjet/simulation/observer.hpp"
+#include "ehdjet/observers/observer.hpp"
 
 #include <functional>
 #include <limits>
@@ -41,28 +41,22 @@ public:
 
   /// Events at the same instant are applied in the order in which they were added.
   void add(std::unique_ptr<Event> event);
-  void add(std::unique_ptr<Observer> observer) {
-    observer->skip_to(restored_at_);
-    observers_.push_back(std::move(observer));
-  }
-  void add(std::unique_ptr<StepObserver> observer) {
-    step_observers_.push_back(std::move(observer));
-  }
+  /// Any number of observers; each is called in the order in which they were added.
+  void add(std::shared_ptr<Observer> observer);
   /// Apply events at the end of the step that contains them, as the paper did: first order in
   /// the step size, whatever the method.
   void snap_events_to_step_ends() { events_located_ = false; }
 
-  /// Called after every step; may throw to end the run.
+  /// Adds an observer that calls `hook` at the end of every step; it may throw to end the run.
   using StepHook = std::function<void(const Simulation&)>;
-  void after_each_step(StepHook hook) { hook_ = std::move(hook); }
+  void after_each_step(StepHook hook);
 
-  /// Hands over a checkpoint at the end of the first step at or after each multiple of `interval`
-  /// [s]. No step is cut for it, and none is made that a run with a later end would not make.
-  /// The integrator restarts there, so that a run that goes on from it has the same bits.
-  using CheckpointSink = std::function<void(const Checkpoint&)>;
-  void make_checkpoints(double interval, CheckpointSink sink);
-  /// Goes on from a checkpoint of the same scene. To be called after all events and before any
-  /// observer has been added.
+  /// Shows observers a checkpoint at the end of the first step at or after each multiple of
+  /// `interval` [s]. No step is cut for it, and none is made that a run with a later end would not
+  /// make. The integrator restarts there, so that a run that goes on from it has the same bits.
+  void make_checkpoints(double interval);
+  /// Goes on from a checkpoint of the same scene. To be called after all events have been added
+  /// and before the run.
   /// errors : InputError if it is not from such a scene
   void restore(const Checkpoint& checkpoint);
 
@@ -97,6 +91,7 @@ private:
   void archive(const Archive& a);
   void make_checkpoint();
   [[nodiscard]] double next_checkpoint() const;
+  [[nodiscard]] JetSnapshot now() const;
   [[noreturn]] void fail(double h, const char* why);
 
   JetState jet_;
@@ -106,9 +101,8 @@ private:
   StepSizeControl control_;
   bool checks_coulomb_;
   std::vector<std::unique_ptr<Event>> events_;
-  std::vector<std::unique_ptr<Observer>> observers_;
-  std::vector<std::unique_ptr<StepObserver>> step_observers_;
-  StepHook hook_;
+  std::vector<std::shared_ptr<Observer>> observers_;
+  std::vector<Observer*> step_observers_, step_end_observers_; // those of them that want it
   bool events_located_ = true;
 
   Ledger ledger_;
@@ -118,9 +112,8 @@ private:
   double expected_event_ = std::numeric_limits<double>::infinity(); // [s]
   std::vector<double> restart_step_; // per event: a step that suits the motion after it [s]
   std::optional<std::size_t> after_event_; // the event that the next step follows
-  double checkpoint_interval_ = 0;         // [s]
+  double checkpoint_interval_ = 0;         // 0: none are made [s]
   double checkpoint_due_ = std::numeric_limits<double>::infinity(); // [s]
-  CheckpointSink checkpoint_sink_;
   double restored_at_ = 0;       // time of the checkpoint that this run goes on from [s]
   std::vector<double> snapshot_; // a state inside a step
   std::vector<DepositedBead> deposited_;

@@ -1,4 +1,4 @@
-#include "run_writer.hpp"
+#include "ehdjet/run_files/run_file.hpp"
 
 #include "ehdjet/core/error.hpp"
 
@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "checkpoint_slots.hpp"
+#include "data_set.hpp"
 #include "file_driver.hpp"
 
 namespace ehdjet {
@@ -132,6 +133,12 @@ void write_ledger(hid_t file, const Ledger& ledger) {
   hdf5::write_attribute(group, "collector_radius", ledger.collector_radius);
 }
 
+Handle group_in(hid_t file, const std::string& name) {
+  return hdf5::has(file, name.c_str())
+             ? Handle(H5Gopen2(file, name.c_str(), H5P_DEFAULT), H5Gclose)
+             : hdf5::create_group(file, name.c_str());
+}
+
 void write_status(hid_t file, const std::string& status, const std::string& message) {
   hdf5::write_attribute(file, "status", status);
   hdf5::write_attribute(file, "message", message);
@@ -139,14 +146,26 @@ void write_status(hid_t file, const std::string& status, const std::string& mess
 
 } // namespace
 
-RunWriter::RunWriter(const fs::path& path, bool overwrite, const Provenance& provenance,
-                     double flush_interval)
+template <class Action>
+void RunFile::guard(const Action& action) {
+  if (broken()) throw_error();
+  try {
+    action();
+  } catch (const hdf5::Failure& failure) {
+    abandon(failure);
+  }
+  if (broken()) throw_error();
+}
+
+RunFile::RunFile(const fs::path& path, bool overwrite, const Provenance& provenance,
+                 double flush_interval)
     : path_(checked(path, overwrite))
-    , flush_interval_(flush_interval) {
+    , flush_interval_(flush_interval)
+    , file_(std::make_unique<Handle>()) {
   hdf5::silence_errors();
   TemporaryFile temporary(path_);
   guard([&] {
-    file_ = {
+    *file_ = {
         H5Fcreate(temporary.path().c_str(), H5F_ACC_TRUNC, file_creation(), file_access()),
         H5Fclose};
     create(provenance);
@@ -155,8 +174,8 @@ RunWriter::RunWriter(const fs::path& path, bool overwrite, const Provenance& pro
   temporary.rename();
 }
 
-RunWriter::~RunWriter() {
-  if (file_ < 0) return;
+RunFile::~RunFile() {
+  if (*file_ < 0) return;
   try {
     if (!broken()) flush();
   } catch (const Error&) { // nobody left to tell; what was flushed before is safe
@@ -164,50 +183,68 @@ RunWriter::~RunWriter() {
   close();
 }
 
-void RunWriter::create(const Provenance& provenance) {
-  hdf5::write_attribute(file_, "format", std::string("ehdjet run"));
-  hdf5::write_attribute(file_, "format_version", std::uint64_t{1});
-  write_status(file_, "running", "");
-  hdf5::write_attribute(file_, "scene_file", provenance.scene_file);
+void RunFile::create(const Provenance& provenance) {
+  hdf5::write_attribute(*file_, "format", std::string("ehdjet run"));
+  hdf5::write_attribute(*file_, "format_version", std::uint64_t{1});
+  write_status(*file_, "running", "");
+  hdf5::write_attribute(*file_, "scene_file", provenance.scene_file);
   for (const auto& [name, value] : provenance.environment) {
-    hdf5::write_attribute(file_, name.c_str(), value);
+    hdf5::write_attribute(*file_, name.c_str(), value);
   }
-  const Handle scene = hdf5::create_group(file_, "scene");
+  const Handle scene = hdf5::create_group(*file_, "scene");
   hdf5::write_text(scene, "given", provenance.scene_given);
   hdf5::write_text(scene, "resolved", provenance.scene_resolved);
 }
 
-Handle RunWriter::create_group(const char* name) {
-  return hdf5::create_group(file_, name);
+Column& RunFile::add_column(const std::string& group, const ColumnInfo& info,
+                            std::size_t chunk_rows) {
+  guard([&] {
+    columns_.emplace_back(
+        Column::DataSet::create(group_in(*file_, group), info, chunk_rows), info.type,
+        chunk_rows);
+  });
+  return columns_.back();
 }
 
-void RunWriter::flush() {
+void RunFile::describe(const std::string& group, const char* attribute,
+                       const std::string& text) {
+  guard([&] { hdf5::write_attribute(group_in(*file_, group), attribute, text); });
+}
+
+void RunFile::write(const std::function<void()>& append) {
+  EHDJET_EXPECTS(*file_ >= 0); // not finished
+  guard(append);
+  if (std::chrono::steady_clock::now() - flushed_ >= flush_interval_) flush();
+}
+
+void RunFile::flush() {
   guard([&] {
-    for (hdf5::Column& column : columns_) column.flush();
-    hdf5::check(H5Fflush(file_, H5F_SCOPE_LOCAL));
-    hdf5::FileDriver::of(file_).commit();
+    for (Column& column : columns_) column.flush();
+    hdf5::check(H5Fflush(*file_, H5F_SCOPE_LOCAL));
+    hdf5::FileDriver::of(*file_).commit();
   });
   flushed_ = std::chrono::steady_clock::now();
 }
 
 // Two commits: at no time does the file name a slot that is not complete.
-void RunWriter::keep(const Checkpoint& checkpoint) {
+void RunFile::keep(const Checkpoint& checkpoint) {
   std::uint64_t slot = 0;
-  guard([&] { slot = hdf5::fill_free_slot(file_, checkpoint); });
+  guard([&] { slot = hdf5::fill_free_slot(*file_, checkpoint); });
   flush();
-  guard([&] { hdf5::make_current(file_, slot); });
+  guard([&] { hdf5::make_current(*file_, slot); });
   flush();
 }
 
-void RunWriter::finish(const std::string& status, const std::string& message,
-                       const RunStatistics& statistics, const Ledger& ledger) {
-  EHDJET_EXPECTS(file_ >= 0); // once
+void RunFile::finish(const std::string& status, const std::string& message,
+                     const RunStatistics& statistics, const Ledger& ledger,
+                     const std::map<std::string, std::string>& notes) {
+  EHDJET_EXPECTS(*file_ >= 0); // once
   const auto last_words = [&] {
-    write_status(file_, status, message);
-    for (const auto& [name, value] : notes_)
-      hdf5::write_attribute(file_, name.c_str(), value);
-    write_statistics(file_, statistics);
-    write_ledger(file_, ledger);
+    write_status(*file_, status, message);
+    for (const auto& [name, value] : notes)
+      hdf5::write_attribute(*file_, name.c_str(), value);
+    write_statistics(*file_, statistics);
+    write_ledger(*file_, ledger);
   };
   if (!broken()) {
     guard(last_words);
@@ -219,7 +256,9 @@ void RunWriter::finish(const std::string& status, const std::string& message,
   // caller knows already that the file could not be written: failing again is no news.
   close();
   try {
-    guard([&] { file_ = {H5Fopen(path_.c_str(), H5F_ACC_RDWR, file_access()), H5Fclose}; });
+    guard([&] {
+      *file_ = {H5Fopen(path_.c_str(), H5F_ACC_RDWR, file_access()), H5Fclose};
+    });
     guard(last_words);
     flush();
   } catch (const RunError&) {
@@ -227,26 +266,26 @@ void RunWriter::finish(const std::string& status, const std::string& message,
   close();
 }
 
-void RunWriter::close() {
+void RunFile::close() {
   columns_.clear();
-  file_.reset();
+  file_->reset();
 }
 
-bool RunWriter::broken() const {
-  return file_ >= 0 && hdf5::FileDriver::of(file_).error() != 0;
+bool RunFile::broken() const {
+  return *file_ >= 0 && hdf5::FileDriver::of(*file_).error() != 0;
 }
 
-void RunWriter::abandon(const hdf5::Failure& failure) {
+void RunFile::abandon(const std::exception& failure) {
   if (broken()) throw_error();
-  if (file_ >= 0)
-    hdf5::FileDriver::of(file_).abandon(EIO); // not the disk: say what HDF5 says
+  if (*file_ >= 0)
+    hdf5::FileDriver::of(*file_).abandon(EIO); // not the disk: say what HDF5 says
   throw RunError(fmt::format("cannot write {}: {}", path_.string(), failure.what()));
 }
 
-void RunWriter::throw_error() const {
+void RunFile::throw_error() const {
   throw RunError(fmt::format("cannot write {}: {}. It is readable up to the last flush",
                              path_.string(),
-                             std::strerror(hdf5::FileDriver::of(file_).error())));
+                             std::strerror(hdf5::FileDriver::of(*file_).error())));
 }
 
 } // namespace ehdjet

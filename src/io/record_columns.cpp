@@ -1,0 +1,240 @@
+#include "record_columns.hpp"
+
+#include "ehdjet/core/error.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <string>
+
+namespace ehdjet {
+namespace {
+
+constexpr ColumnType count = ColumnType::count, flag = ColumnType::flag;
+
+// Sum of the chords between successive beads; an embryo lies on its chord.
+double path_length(const ConstVec3View& r) {
+  double length = 0;
+  for (std::size_t k = 1; k < r.size(); ++k) length += (r[k] - r[k - 1]).norm();
+  return length;
+}
+
+Vec3 tip(const JetSnapshot& s) {
+  return s.columns.position()[s.columns.beads - 1];
+}
+
+double tip_from_axis(const JetSnapshot& s) {
+  return std::hypot(tip(s).y(), tip(s).z());
+}
+
+/// What has been added to a sum since the previous row, over the time between.
+class Rate {
+public:
+  explicit Rate(CompensatedSum Ledger::*sum)
+      : sum_(sum) {}
+  double operator()(const JetSnapshot& s) {
+    const double now = s.ledger.*sum_, elapsed = s.time - previous_time_;
+    const bool first = !(elapsed > 0); // also of a row that comes twice
+    const double rate = first ? 0. : (now - previous_) / elapsed;
+    previous_time_ = s.time, previous_ = now;
+    return rate;
+  }
+
+private:
+  CompensatedSum Ledger::*sum_;
+  double previous_time_ = std::numeric_limits<double>::infinity(); // [s]
+  double previous_ = 0;
+};
+
+auto from_ledger(double Ledger::*value) {
+  return [value](const JetSnapshot& s) { return s.ledger.*value; };
+}
+
+auto from_statistics(std::uint64_t RunStatistics::*value) {
+  return [value](const JetSnapshot& s) { return static_cast<double>(s.statistics.*value); };
+}
+
+auto change_of(double JetTotals::*value) {
+  return [value](const RefinementRecord& r) { return r.change.*value; };
+}
+
+auto momentum_change(int component) {
+  return [component](const RefinementRecord& r) { return r.change.momentum[component]; };
+}
+
+auto number_of(std::size_t RefinementRecord::*value) {
+  return [value](const RefinementRecord& r) { return static_cast<double>(r.*value); };
+}
+
+auto state(std::size_t column) {
+  return [column](const JetSnapshot& s) {
+    EHDJET_EXPECTS(s.columns.flat.size() > column * s.columns.beads);
+    return s.columns.column(column);
+  };
+}
+
+auto carried(std::vector<double> JetState::*values) {
+  return
+      [values](const JetSnapshot& s) -> std::span<const double> { return s.jet.*values; };
+}
+
+/// Of all beads, computed; `fill(snapshot, values)` finds zeros.
+template <class Fill>
+auto computed(Fill fill) {
+  return [fill, values = std::vector<double>()](
+             const JetSnapshot& s) mutable -> std::span<const double> {
+    values.assign(s.jet.beads(), 0.0);
+    fill(s, values);
+    return values;
+  };
+}
+
+void fill_radius(const JetSnapshot& s, std::vector<double>& values) {
+  const auto r = s.columns.position();
+  const JetState& jet = s.jet;
+  for (std::size_t k = jet.first(); k < jet.beads(); ++k)
+    values[k] = link_radius(jet.volume[k], link_length(r, jet.first(), k));
+  if (jet.has_embryo) values[1] = link_radius(jet.volume[1], (r[1] - r[0]).norm());
+  // Bead 0 has no link; it gets the radius of the first one, so that a drawn jet has a start.
+  if (jet.first() < jet.beads()) values[0] = values[jet.first()];
+}
+
+} // namespace
+
+std::vector<RecordColumn<JetSnapshot>> observable_columns() {
+  return {
+      {{"time", "s", "simulated time"}, [](const auto& s) { return s.time; }},
+      {{"beads", "1", "links of the chain: all beads but the nozzle", count},
+       [](const auto& s) { return static_cast<double>(s.jet.links()); }},
+      {{"tip_x", "m", "leading bead: distance from the nozzle plane"},
+       [](const auto& s) { return tip(s).x(); }},
+      {{"tip_yz", "m", "leading bead: distance from the axis"}, tip_from_axis},
+      {{"path_length", "m", "length of the chain, chord by chord"},
+       [](const auto& s) { return path_length(s.columns.position()); }},
+      {{"nozzle_speed", "m/s", "speed given to the last released bead"},
+       from_ledger(&Ledger::release_speed)},
+      {{"impact_speed", "m/s", "speed of the last landed bead"},
+       from_ledger(&Ledger::impact_speed)},
+      {{"collector_radius", "m", "of the last landed link"},
+       from_ledger(&Ledger::collector_radius)},
+      {{"current_in", "A", "charge inserted since the previous row, over time"},
+       Rate(&Ledger::inserted_charge)},
+      {{"current_out", "A", "charge removed since the previous row, over time"},
+       Rate(&Ledger::removed_charge)},
+      {{"aperture", "deg", "2 atan(tip_yz / tip_x)"},
+       [](const auto& s) { // full opening angle of the cone the tip runs on
+         return 2 * std::atan2(tip_from_axis(s), tip(s).x()) * 180 / std::numbers::pi;
+       }},
+      {{"evaluations", "1", "of the right-hand side, so far", count},
+       from_statistics(&RunStatistics::evaluations)},
+      {{"steps", "1", "accepted, so far", count}, from_statistics(&RunStatistics::steps)},
+      {{"rejected", "1", "rejected steps, so far", count},
+       from_statistics(&RunStatistics::rejected)},
+      {{"coulomb_error", "1", "relative L2 error of the Coulomb force at its last check"},
+       [](const auto& s) { return s.statistics.coulomb_error.value_or(0); }}};
+}
+
+std::vector<RecordColumn<RefinementRecord>> refinement_columns() {
+  return {
+      {{"time", "s", "of the refinement"}, [](const auto& r) { return r.time; }},
+      {{"kept", "1", "beads 0 to this one were left as they were", count},
+       number_of(&RefinementRecord::kept)},
+      {{"beads_before", "1", "links of the chain before", count},
+       number_of(&RefinementRecord::beads_before)},
+      {{"beads_after", "1", "links of the chain afterwards", count},
+       number_of(&RefinementRecord::beads_after)},
+      {{"mass_change", "kg", "of the chain's sum"}, change_of(&JetTotals::mass)},
+      {{"charge_change", "C", "of the chain's sum"}, change_of(&JetTotals::charge)},
+      {{"volume_change", "m^3", "of the chain's sum"}, change_of(&JetTotals::volume)},
+      {{"momentum_change_x", "kg m/s", "of beads that move freely"}, momentum_change(0)},
+      {{"momentum_change_y", "kg m/s", "of beads that move freely"}, momentum_change(1)},
+      {{"momentum_change_z", "kg m/s", "of beads that move freely"}, momentum_change(2)},
+      {{"kinetic_energy_change", "J", "of beads that move freely"},
+       change_of(&JetTotals::kinetic_energy)},
+      {{"elastic_energy_change", "J", "of the sum of V sigma^2/(2G)"},
+       change_of(&JetTotals::elastic_energy)},
+      {{"coulomb_energy_change", "J", "of all pairs of beads"},
+       change_of(&JetTotals::coulomb_energy)},
+      {{"worst_link", "1",
+        "largest |l/l* - 1| of the new links' chords l, where l* is the arc length that "
+        "they were given"},
+       [](const auto& r) { return r.worst_link; }}};
+}
+
+std::vector<BeadColumn> bead_columns() {
+  return {{{"x", "m", "position along the axis, from the nozzle"},
+           state(0),
+           "position on the collector",
+           [](const Bead& b) { return b.position.x(); }},
+          {{"y", "m", "position across the axis"},
+           state(1),
+           "position on the collector",
+           [](const Bead& b) { return b.position.y(); }},
+          {{"z", "m", "position across the axis"},
+           state(2),
+           "position on the collector",
+           [](const Bead& b) { return b.position.z(); }},
+          {{"vx", "m/s", "velocity"},
+           state(3),
+           "velocity at the landing",
+           [](const Bead& b) { return b.velocity.x(); }},
+          {{"vy", "m/s", "velocity"},
+           state(4),
+           "velocity at the landing",
+           [](const Bead& b) { return b.velocity.y(); }},
+          {{"vz", "m/s", "velocity"},
+           state(5),
+           "velocity at the landing",
+           [](const Bead& b) { return b.velocity.z(); }},
+          {{"stress", "Pa", "of that link"},
+           state(6),
+           "at the landing",
+           [](const Bead& b) { return b.stress; }},
+          {{"radius", "m", "of the link to the bead upstream"}, computed(fill_radius)},
+          {{"volume", "m^3", "of that link"},
+           carried(&JetState::volume),
+           "of the bead's link",
+           [](const Bead& b) { return b.volume; }},
+          {{"mass", "kg", "of that link"},
+           carried(&JetState::mass),
+           "of the bead's link",
+           [](const Bead& b) { return b.mass; }},
+          {{"charge", "C", "of that link"},
+           carried(&JetState::charge),
+           "of the bead's link",
+           [](const Bead& b) { return b.charge; }},
+          {{"landed", "1", "1: the bead rests on the collector", flag},
+           computed([](const JetSnapshot& s, std::vector<double>& values) {
+             for (const LandedBead& b : s.jet.landed) values[b.bead] = 1;
+           })},
+          {{"embryo", "1", "1: the bead is still forming at the nozzle", flag},
+           computed([](const JetSnapshot& s, std::vector<double>& values) {
+             if (s.jet.has_embryo) values[1] = 1;
+           })}};
+}
+
+// Those of the link's own stand where the first files had them: after the radii, volume last.
+std::vector<RecordColumn<DepositedBead>> deposit_columns() {
+  std::vector<RecordColumn<DepositedBead>> columns{
+      {{"time", "s", "of the landing"}, [](const auto& d) { return d.time; }},
+      {{"removal_time", "s", "when the bead left the chain"},
+       [](const auto& d) { return d.removal_time; }}};
+  for (const BeadColumn& c : bead_columns()) {
+    if (c.name == "radius") {
+      columns.push_back({{"landing_radius", "m", "of the bead's link at the landing"},
+                         [](const auto& d) { return d.landing_radius; }});
+      columns.push_back({{"radius", "m", "of the bead's link when it left the chain"},
+                         [](const auto& d) { return d.radius; }});
+    }
+    if (c.deposited != nullptr)
+      columns.push_back(
+          {{c.name, c.unit, c.deposited},
+           [of = c.landed_value](const DepositedBead& d) { return of(d.bead); }});
+  }
+  const auto volume = std::ranges::find(columns, "volume", &ColumnInfo::name);
+  std::rotate(volume, volume + 1, columns.end());
+  return columns;
+}
+
+} // namespace ehdjet

@@ -1,0 +1,7 @@
+#include "ehdjet/observers/observer.hpp"
+
+namespace ehdjet {
+
+Observer::~Observer() = default;
+
+} // namespace ehdjet

@@ -1,0 +1,131 @@
+#include "readable_file.hpp"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <system_error>
+
+namespace ehdjet {
+namespace {
+
+/// Parts of a run file, what they are called in messages, and what in a scene asks for them.
+struct Part {
+  const char *group, *meaning, *remedy;
+};
+constexpr std::array<Part, 6> parts{
+    {{"observables", "observables", "output.observables"},
+     {"frames", "frames", "output.frames"},
+     {"deposit", "deposit", "output.deposit = true"},
+     {"refinements", "record of refinements", "output.refinements"},
+     {"budget", "budget of energy and momentum", "output.budget"},
+     {"resolving_power", "resolving power", "output.resolving_power"}}};
+
+herr_t add_name(hid_t, const char* name, const H5L_info_t*, void* names) {
+  static_cast<std::vector<std::string>*>(names)->emplace_back(name);
+  return 0;
+}
+
+} // namespace
+
+ReadableFile::ReadableFile(const std::filesystem::path& path)
+    : path_(path) {
+  hdf5::silence_errors();
+  std::error_code ignored;
+  if (!std::filesystem::exists(path, ignored)) reject("does not exist");
+  if (std::filesystem::is_directory(path, ignored)) reject("is a folder, not a run file");
+  const htri_t is_hdf5 = H5Fis_hdf5(path.c_str());
+  if (is_hdf5 < 0) reject("cannot be opened");
+  if (is_hdf5 == 0) reject("is not an HDF5 file");
+  try {
+    file_ = {H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose};
+  } catch (const hdf5::Failure& failure) {
+    reject(fmt::format("is no readable HDF5 file, it is damaged or truncated ({})",
+                       failure.what()));
+  }
+}
+
+void ReadableFile::reject(const std::string& reason) const {
+  throw InputError(path_.string() + " " + reason);
+}
+
+bool ReadableFile::has(const std::string& name) const {
+  return hdf5::has(file_, name.c_str());
+}
+
+void ReadableFile::require(const std::string& part) const {
+  const auto* const known =
+      std::ranges::find_if(parts, [&](const Part& p) { return p.group == part; });
+  EHDJET_EXPECTS(known != parts.end());
+  if (!has(part))
+    reject(fmt::format("has no {}: set {} in the scene", known->meaning, known->remedy));
+}
+
+hid_t ReadableFile::data_set(const std::string& name) {
+  auto found = data_sets_.find(name);
+  if (found == data_sets_.end()) {
+    if (!has(name.substr(0, name.find('/'))) || !has(name))
+      reject(fmt::format("has no dataset /{}", name));
+    hdf5::Handle opened(H5Dopen2(file_, name.c_str(), H5P_DEFAULT), H5Dclose);
+    const hdf5::Handle space(H5Dget_space(opened), H5Sclose);
+    if (H5Sget_simple_extent_ndims(space) != 1)
+      reject(fmt::format("/{} is no flat array", name));
+    found = data_sets_.emplace(name, std::move(opened)).first;
+  }
+  return found->second;
+}
+
+// Other programs that write such files need not say their units.
+std::string ReadableFile::unit(const std::string& name) {
+  auto found = units_.find(name);
+  if (found == units_.end()) {
+    const hid_t set = data_set(name);
+    found = units_
+                .emplace(name, hdf5::has_attribute(set, "unit")
+                                   ? hdf5::read_text_attribute(set, "unit")
+                                   : "1")
+                .first;
+  }
+  return found->second;
+}
+
+std::vector<std::string> ReadableFile::names_in(const std::string& group) const {
+  std::vector<std::string> names;
+  const hdf5::Handle handle(H5Gopen2(file_, group.c_str(), H5P_DEFAULT), H5Gclose);
+  hdf5::check(H5Literate(handle, H5_INDEX_NAME, H5_ITER_INC, nullptr, add_name, &names));
+  return names;
+}
+
+std::uint64_t ReadableFile::common_length(const std::string& group) {
+  std::uint64_t common = std::numeric_limits<std::uint64_t>::max();
+  for (const std::string& name : names_in(group))
+    common = std::min(common, length(fmt::format("{}/{}", group, name)));
+  return common;
+}
+
+std::vector<RunTable::Column> ReadableFile::columns(const std::string& group,
+                                                    const std::vector<std::string>& names,
+                                                    std::uint64_t first,
+                                                    std::uint64_t count) {
+  std::vector<RunTable::Column> all;
+  for (const std::string& name : names) {
+    const std::string path = fmt::format("{}/{}", group, name);
+    all.push_back({name, unit(path), rows<double>(path, first, count)});
+  }
+  return all;
+}
+
+const std::vector<std::uint64_t>& ReadableFile::frame_offsets() {
+  if (frame_offsets_) return *frame_offsets_;
+  require("frames");
+  auto offset = rows<std::uint64_t>("frames/offset", 0, length("frames/offset"));
+  const std::uint64_t times = length("frames/time"),
+                      beads = has("beads") ? common_length("beads") : 0;
+  std::size_t frames = 0;
+  while (frames < times && frames + 1 < offset.size() && offset[frames + 1] <= beads
+         && offset[frames] <= offset[frames + 1])
+    ++frames;
+  offset.resize(frames + 1);
+  return frame_offsets_.emplace(std::move(offset));
+}
+
+} // namespace ehdjet

@@ -1,0 +1,179 @@
+#include "ehdjet/runs/run_scene.hpp"
+
+#include "ehdjet/budget/budget.hpp"
+#include "ehdjet/core/error.hpp"
+#include "ehdjet/core/version.hpp"
+#include "ehdjet/coulomb/direct_sum.hpp"
+#include "ehdjet/io/records.hpp"
+#include "ehdjet/run_files/run_reader.hpp"
+
+#include <omp.h>
+
+#include <exception>
+#include <fmt/format.h>
+#include <memory>
+#include <system_error>
+#include <utility>
+
+namespace ehdjet {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The run was stopped from outside.
+struct Interrupted : RunError {
+  using RunError::RunError;
+};
+
+class InterruptCheck final : public Observer {
+public:
+  explicit InterruptCheck(std::function<const char*()> interrupted)
+      : interrupted_(std::move(interrupted)) {}
+  [[nodiscard]] Interest interest() const override { return {.ends_of_steps = true}; }
+  void after_step(const JetSnapshot& snapshot) override {
+    if (const char* reason = interrupted_())
+      throw Interrupted(
+          fmt::format("stopped by {} at t = {:.9g} s", reason, snapshot.time));
+  }
+
+private:
+  std::function<const char*()> interrupted_;
+};
+
+/// A number of threads for a while.
+class Threads {
+public:
+  explicit Threads(std::optional<std::size_t> threads)
+      : before_(omp_get_max_threads()) {
+    if (threads) omp_set_num_threads(static_cast<int>(*threads));
+  }
+  ~Threads() { omp_set_num_threads(before_); }
+  Threads(const Threads&) = delete;
+  Threads& operator=(const Threads&) = delete;
+
+private:
+  int before_;
+};
+
+void add_records(Simulation& simulation, const std::shared_ptr<RunFile>& file,
+                 const Scene& scene) {
+  const SceneConfig& config = scene.config;
+  const OutputConfig& output = config.output;
+  if (output.observables)
+    simulation.add(record_observables(file, *output.observables,
+                                      config.coulomb && config.coulomb->check_every));
+  if (output.frames)
+    simulation.add(record_frames(file, *output.frames, simulation.dynamics().has_stress()));
+  if (output.deposit) simulation.add(record_deposit(file));
+  if (output.refinements != RefinementRecords::none)
+    simulation.add(
+        record_refinements(file, output.refinements == RefinementRecords::energies));
+  if (output.resolving_power)
+    simulation.add(
+        record_resolving_power(file, *output.resolving_power, config.nozzle->link_length));
+  if (output.budget) {
+    const auto budget =
+        std::make_shared<Budget>(simulation.dynamics(), simulation.events());
+    simulation.add(record_budget(file, *output.budget, budget));
+    simulation.add(budget);
+  }
+  if (output.checkpoints) {
+    simulation.make_checkpoints(*output.checkpoints);
+    simulation.add(record_checkpoints(file));
+  }
+}
+
+/// What the solver has done, unless it is the direct sum, of which there is nothing to tell.
+std::string coulomb_method(const Simulation& s) {
+  for (const auto& term : s.dynamics().terms())
+    if (const auto report = term->report(); report && report->method != "direct")
+      return report->method;
+  return {};
+}
+
+/// Takes over the jet of a run of the same scene that another file has a checkpoint of.
+void go_on_from(const fs::path& file, const fs::path& output, Simulation& simulation,
+                const Scene& scene) {
+  std::error_code ignored;
+  if (fs::equivalent(file, output, ignored))
+    throw InputError(
+        fmt::format("{} holds the run up to its checkpoint: choose another name "
+                    "for its continuation with -o",
+                    file.string()));
+  const RunReader before(file);
+  if (const auto d = difference_from(before.scene_resolved(), scene.config))
+    throw InputError(fmt::format("{} cannot be continued with this scene: {}. Only "
+                                 "run.end_time and [output] may differ",
+                                 file.string(), *d));
+  simulation.restore(before.checkpoint());
+  if (const double t = simulation.jet().time; t >= scene.config.run.end_time)
+    throw InputError(
+        fmt::format("{} cannot be continued: its checkpoint at t = {:.9g} s is "
+                    "not before run.end_time = {} s",
+                    file.string(), t, scene.config.run.end_time));
+}
+
+} // namespace
+
+std::map<std::string, std::string> build_environment() {
+  return {{"version", version::number},
+          {"commit", version::commit},
+          {"compiler", version::compiler},
+          {"build_type", version::build_type},
+          {"simd", std::string(name_of(best_simd_level()))},
+          {"threads", std::to_string(omp_get_max_threads())}};
+}
+
+RunResult run_scene(const Scene& scene, const fs::path& path, RunOptions options) {
+  const Threads threads(options.threads ? options.threads : scene.config.run.threads);
+  const auto simulation = build_simulation(scene, std::move(options.extras));
+  Provenance provenance{.scene_file = options.scene_file,
+                        .scene_given = scene.given,
+                        .scene_resolved = resolved_toml(scene.config),
+                        .environment = build_environment()};
+  provenance.environment.merge(options.provenance);
+  if (options.continue_from) {
+    go_on_from(*options.continue_from, path, *simulation, scene);
+    provenance.environment["continued_from"] = options.continue_from->string();
+    provenance.environment["continued_at"] = fmt::format("{} s", simulation->jet().time);
+  }
+  const auto file = std::make_shared<RunFile>(path, options.overwrite, provenance,
+                                              scene.config.output.flush);
+  add_records(*simulation, file, scene);
+  if (options.started) options.started(*simulation);
+  if (options.interrupted) // last: the others have seen the step that it ends
+    simulation->add(std::make_unique<InterruptCheck>(std::move(options.interrupted)));
+
+  const auto finish = [&](const char* status, const std::string& message) {
+    RunResult result{.status = status,
+                     .message = message,
+                     .jet = simulation->jet(),
+                     .statistics = simulation->statistics(),
+                     .ledger = simulation->ledger(),
+                     .coulomb_method = coulomb_method(*simulation)};
+    result.statistics.coincident_pairs = simulation->dynamics().coincident_pairs();
+    std::map<std::string, std::string> notes;
+    if (!result.coulomb_method.empty()) notes["coulomb"] = result.coulomb_method;
+    file->finish(status, message, result.statistics, result.ledger, notes);
+    return result;
+  };
+  try {
+    simulation->run_until(scene.config.run.end_time);
+  } catch (const Interrupted& e) {
+    return finish("interrupted", e.what());
+  } catch (const Error& e) {
+    std::string kept = fmt::format("everything up to then is in {}", path.string());
+    try {
+      finish("failed", e.what());
+    } catch (const Error& also) {
+      kept = also.what();
+    }
+    throw Error(fmt::format("{}; {}", e.what(), kept), e.exit_code());
+  } catch (const std::exception& e) { // of the caller's own force, event or observer
+    finish("failed", e.what());
+    throw;
+  }
+  return finish("complete", "");
+}
+
+} // namespace ehdjet
