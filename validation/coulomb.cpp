@@ -120,7 +120,7 @@ public:
     JetState jet = jet_;
     const double length = path_length(std::as_const(jet).columns().position());
     RefinementRule rule;
-    rule.mesh.length = length / static_cast<double>(n);
+    rule.length = length / static_cast<double>(n);
     refine_jet(jet, rule);
     const auto r = std::as_const(jet).columns().position();
     Charges c;

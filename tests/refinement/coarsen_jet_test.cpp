@@ -26,7 +26,7 @@ JetState uneven_jet(std::size_t links) {
 
 RefinementRule joining(double coarsen, double length = 1e9) {
   RefinementRule rule;
-  rule.mesh.length = length, rule.coarsen = coarsen;
+  rule.length = length, rule.coarsen = coarsen;
   return rule;
 }
 

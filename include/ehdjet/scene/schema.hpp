@@ -78,13 +78,6 @@ inline constexpr Choices<ErrorNorm, 2> error_norms{
 
 inline constexpr Choices<LinkRemap, 2> refinement_remaps{
     {{"conservative", LinkRemap::conservative}, {"paper", LinkRemap::paper}}};
-inline constexpr Choices<MeshWeight, 4> refinement_weights{
-    {{"uniform", MeshWeight::uniform},
-     {"curvature", MeshWeight::curvature},
-     {"radius", MeshWeight::radius},
-     {"stress", MeshWeight::stress}}};
-inline constexpr Choices<Spread, 2> refinement_spreads{
-    {{"linear", Spread::linear}, {"monotone-cubic", Spread::monotone_cubic}}};
 inline constexpr Choices<ColumnRemap, 2> column_remaps{
     {{"spline", ColumnRemap::spline}, {"conservative", ColumnRemap::conservative}}};
 inline constexpr Choices<RefinementRecords, 3> refinement_records{
@@ -227,8 +220,7 @@ void describe(V& v, SurfaceTensionConfig& c) {
 
 template <class V>
 void describe(V& v, VaricosityConfig& c) {
-  v.required("every", c.every, between("-", 1, 1e9),
-             "every so-manieth inserted bead is one");
+  v.required("every", c.every, between("-", 1, 1e9), "every k-th inserted bead is one");
   v.required("factor", c.factor, positive("-", 1e3),
              "multiplies what it has of the following");
   v.optional("mass", c.mass, YesNo{}, "its mass");
@@ -238,36 +230,19 @@ void describe(V& v, VaricosityConfig& c) {
 
 template <class V>
 void describe(V& v, RefinementConfig& c) {
-  v.required("length", c.length, positive("m", 1),
-             "links longer than this are cut, L~; the mean link of a weighted mesh");
+  v.required("length", c.length, positive("m", 1), "links longer than this are cut, L~");
   v.required("interval", c.interval, positive("s", longest_time),
              "time between refinements, t_ref: they happen at its multiples");
   v.optional("remap", c.remap, refinement_remaps,
              "volume, mass and charge: shared out along the arc length, every sum and bump "
              "kept; or the paper's, from a spline of the radius");
-  v.optional("spread", c.spread, refinement_spreads,
-             "conservative remap: what a link carries is spread evenly, or smoothly and "
-             "monotonically along the jet",
-             "linear");
   v.optional("velocity", c.velocity, column_remaps,
              "Akima spline, or average that keeps the momentum");
   v.optional("stress", c.stress, column_remaps,
              "Akima spline, or average that keeps the sum of volume times stress");
-  v.optional("weight", c.weight, refinement_weights,
-             "where the mesh is finer than elsewhere: nowhere, or where this is large");
-  v.optional(
-      "weight_strength", c.weight_strength, non_negative("-", 1e6),
-      "1 + weight_strength w/<w> links where there would be one if the weight w were 0",
-      "1, if there is a weight");
-  v.optional("shortest", c.shortest, positive("m", 1), "shortest link of a weighted mesh",
-             "no limit");
-  v.optional("longest", c.longest, positive("m", 1), "longest link of a weighted mesh",
-             "no limit");
   v.optional("coarsen", c.coarsen, positive("m", 1),
              "join neighbouring links that are together no longer than this",
              "links are never joined");
-  v.optional("max_beads", c.max_beads, between("-", 2, 1e9),
-             "refine no further than to this number of beads", "no limit");
 }
 
 template <class V>
