@@ -3,6 +3,7 @@
 #include "ehdjet/scene/read_scene.hpp"
 #include "ehdjet/simulation/build.hpp"
 #include "ehdjet/simulation/simulation.hpp"
+#include "ehdjet/studies/table2.hpp"
 
 #include <cstddef>
 #include <functional>
@@ -15,16 +16,8 @@ namespace ehdjet::validation {
 /// scenes/<name>.toml with overrides "table.key=value"; nothing is recorded unless asked for.
 Scene scene(const std::string& name, const std::vector<std::string>& overrides = {});
 
-/// A row of the paper's Table 2: case I, or refined at L~, with the paper's remap.
-struct Table2Row {
-  const char *name, *scene;
-  double length; ///< L~ [m]; 0: none
-  double beads;  ///< the paper's
-  double wall;   ///< the paper's, on 24 cores [s]
-  double
-      converged; ///< beads right before a refinement, stationary (model 7); none: the mean
-};
-const std::vector<Table2Row>& table2();
+/// "none" or "0.8 cm": L~ of a row of the paper's Table 2.
+std::string name_of(const Table2Row& row);
 
 /// The jet as a whole at one instant.
 struct Sample {
