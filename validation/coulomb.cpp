@@ -94,7 +94,7 @@ struct Force {
   std::vector<double> x, y, z;
 };
 
-/// The best of some calls, two at least unless one takes long [s].
+/// The shortest time of several calls; a single one if it takes long [s].
 double time_calls(CoulombSolver& solver, const Charges& c, Force& force, double at_least) {
   using Clock = std::chrono::steady_clock;
   double best = std::numeric_limits<double>::infinity(), spent = 0;

@@ -22,7 +22,7 @@ namespace {
 using namespace ehdjet;
 using namespace ehdjet::validation;
 
-constexpr double snapshot_time = 9e-3; // the paper's, before the jet lands [s]
+constexpr double snapshot_time = 9e-3; // as in the paper, before the jet lands [s]
 
 Scene refined(double length, double interval, LinkRemap remap) {
   Scene s = scene("table2_04");
@@ -65,7 +65,7 @@ void convergence(Suite& suite) {
   in_parallel(jobs);
 
   // Jets lengthen slowly as their mesh is refined: the self-energy of a line of point charges
-  // grows with the logarithm of their number. There is no limit to be bounded, but the interval's.
+  // grows with the logarithm of their number. The path length has no limit for short links; only that for short intervals can be checked.
   double worst = 0;
   for (std::size_t i = 0; i < meshes.size(); ++i) {
     const std::size_t row = i / lengths.size();
@@ -74,7 +74,7 @@ void convergence(Suite& suite) {
     csv.row(meshes[i].length, meshes[i].interval,
             name_of(meshes[i].remap, refinement_remaps), ends[i].beads, ends[i].path_length,
             ends[i].tip, finest.path_length, path, relative(ends[i].tip, finest.tip));
-    // On finer meshes point charges push each other harder, and the sooner the mesh is cut.
+    // On finer meshes point charges push each other harder, and more so if the mesh is cut earlier.
     constexpr double finest_published = 2e-3;
     if (row % intervals.size() > 0 && meshes[i].length >= finest_published)
       worst = std::max(worst,
@@ -184,8 +184,8 @@ void resolving_power(Suite& suite) {
     for (std::size_t p = 0; p < places; ++p)
       csv.row(i == 0 ? "unrefined" : name_of(table2[i]), ResolvingPower::lambda(p),
               power[i].mean(p));
-  // The paper: 1/40 and 1/200 (read off a figure), and above 0.075 when refined, which is as far
-  // from what its algorithm gives as its numbers of beads are.
+  // The paper has 1/40 and 1/200 (read off a figure), and above 0.075 when refined. Its algorithm
+  // gives other values here, as it does for the numbers of beads.
   suite.check_at_most("1/R of case I at lambda 0.1 from 40",
                       relative(1 / power[0].mean(10), 40), 0.25);
   suite.check_at_least("1/R of case I at lambda 1", 1 / power[0].mean(places - 1), 160);
@@ -249,7 +249,7 @@ void varicosity(Suite& suite) {
     });
   in_parallel(jobs);
   for (const Case& c : cases) {
-    const auto segments = last_segments(c.beads, 1.0); // some ten bumps' distance
+    const auto segments = last_segments(c.beads, 1.0); // the length of about ten bumps
     double arc = 0;
     for (const Segment& s : segments) { // one radius per link: a step function
       csv.row(c.mesh, arc, s.radius);
@@ -264,7 +264,7 @@ void varicosity(Suite& suite) {
 
 // --- short links
 
-// A viscous thread without charge, held at one end, that its surface tension pulls together: from
+// A viscous thread without charge is held at one end, and its surface tension pulls it together. From
 // pi a^2 sigma = -pi a alpha and sigma = mu (dl/dt)/l follows a = a0 + alpha t/(2 mu).
 struct Thread {
   double length = 0.02, radius = 2e-5, density = 840; // [m], [m], [kg/m^3]

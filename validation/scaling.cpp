@@ -1,7 +1,7 @@
 // What does a run cost, and is it right all the same?
 //
-// The paper's Table 2, against runs at a tight tolerance with the direct sum; what each way of
-// saving evaluations brings; finer meshes and longer jets than the paper's. Writes table2.csv,
+// The paper's Table 2, against runs at a tight tolerance with the direct sum; the evaluations that
+// each method and setting saves; finer meshes and longer jets than the paper's. Writes table2.csv,
 // table2_ideas.csv, scaling.csv.
 
 #include "ehdjet/integrators/butcher_tableau.hpp"
@@ -113,7 +113,7 @@ private:
       if (!reference) return {};
       return relative(s.*value, *reference.*value);
     };
-    // The reference ends earlier: its time is not the paper's run's.
+    // The reference ends earlier, so that its wall time cannot be compared with the paper's.
     const Sample all = validation::mean(t.run.samples, 0, window_.end);
     csv_.row(row.length, threads, solver, rtol, all.beads, row.beads, t.seconds,
              reference && suite_.full() ? std::optional{row.wall} : std::nullopt,
@@ -170,7 +170,7 @@ std::vector<Idea> ideas() {
   all.push_back({"fmm tolerance 1e-3", [](Scene& s) {
                    s.config.coulomb->solver = "fmm", s.config.coulomb->tolerance = 1e-3;
                  }});
-  // As published, but 1e-8 s: that would take hours.
+  // As published, but with longer steps: with the published 1e-8 s it would take hours.
   all.push_back({"rk4 with steps of 1e-6 s at step ends", [](Scene& s) {
                    s.config.integrator.method = "rk4";
                    s.config.integrator.rtol.reset(), s.config.integrator.step = 1e-6;
@@ -284,7 +284,7 @@ private:
             {1'000'000, "treecode", 2, 60}, {1'000'000, "fmm", 20, 120}};
   }
 
-  /// Point charges stand for a jet only while links are longer than it is wide.
+  /// Point charges can represent a jet only while its links are longer than it is wide.
   void check_links(const JetState& jet) {
     double least = std::numeric_limits<double>::infinity(), longest = 0;
     for (std::size_t k = jet.first(); k < jet.beads(); ++k) {
@@ -315,7 +315,7 @@ private:
     const double seconds = std::chrono::duration<double>(Clock::now() - clock).count();
     const RunStatistics& after = simulation.statistics();
     const auto evaluations = static_cast<double>(after.evaluations - before.evaluations);
-    // The first few steps are too short to tell what a millisecond takes.
+    // A few steps are too short to estimate the time of a millisecond.
     std::optional<double> per_ms;
     if (steps >= 100) per_ms = 1e-3 * seconds / (simulation.jet().time - start);
     const CoulombConfig& c = *scene.config.coulomb;

@@ -31,7 +31,7 @@ private:
   herr_t (*close_)(hid_t);
 };
 
-/// HDF5 prints its errors to stderr unless told not to; ours say what they mean.
+/// HDF5 prints its errors to stderr unless this is switched off; our messages explain them.
 class SilentErrors {
 public:
   SilentErrors() {

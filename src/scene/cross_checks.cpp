@@ -16,9 +16,9 @@ namespace {
 constexpr double default_rtol = 1e-6;
 /// More rows than this are a mistyped interval: 1e8 rows of observables are 10 GB.
 constexpr double most_rows = 1e8;
-/// Steps that nobody waits for: weeks with 100 beads.
+/// So many steps would take weeks with 100 beads.
 constexpr double too_many_steps = 1e8;
-/// Fewer are refused too if stability asks for steps so much shorter than accuracy does.
+/// Fewer steps are refused, too, if stability needs steps that are so much shorter than accuracy's.
 constexpr double many_steps = 1e6, far_below = 1e-3;
 
 void check_jet(const SceneConfig& c, const SceneText& text) {
@@ -81,11 +81,12 @@ void settle_step(IntegratorConfig& i, const SceneText& text) {
                     "or fixed. Remove one",
                     *i.rtol, *i.step));
   if (i.step && method.kind == MethodKind::chooses)
-    text.fail("integrator.step",
-              fmt::format("integrator.step = {} s and {}: a choice of method goes by the "
-                          "steps that a tolerance allows. Name a method, or give "
-                          "integrator.rtol instead",
-                          *i.step, method_is));
+    text.fail(
+        "integrator.step",
+        fmt::format("integrator.step = {} s and {}: \"auto\" chooses the "
+                    "method by the steps that a tolerance allows. Name a method, or give "
+                    "integrator.rtol instead",
+                    *i.step, method_is));
   if (i.rtol && !has_error_estimate)
     text.fail(
         "integrator.rtol",

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-/// The PVP jets of the paper as scenes, and what is looked at in them.
+/// The PVP jets of the paper as scenes, and the quantities that are compared.
 namespace ehdjet::validation {
 
 /// scenes/<name>.toml with overrides "table.key=value"; nothing is recorded unless asked for.
@@ -32,9 +32,9 @@ double path_length(ConstVec3View r); // [m]
 /// Means over the samples from `from` to `to`.
 Sample mean(const std::vector<Sample>& samples, double from, double to);
 
-/// Of any bead from the same bead of another jet [m]. With different numbers of beads: not a
-/// number, or in a jet that is not refined, where a bead keeps its place from the leading end,
-/// of those that both have.
+/// Largest distance of a bead from the same bead of another jet [m]. With different numbers of beads
+/// it is not a number, unless beads are counted from the leading end: then it is over the beads that
+/// both jets have. In a jet that is not refined a bead keeps its place from that end.
 double largest_distance(const JetState& a, const JetState& b, bool from_the_end = false);
 
 /// |a/b - 1|; 0 if both are the same number.
