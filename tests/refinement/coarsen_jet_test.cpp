@@ -134,7 +134,7 @@ TEST(Coarsening, leaves_a_jet_alone_without_short_links) {
   }
 }
 
-TEST(Coarsening, is_never_asked_for_without_a_length) {
+TEST(Coarsening, without_a_length_is_a_contract_violation) {
   JetState jet = straight_jet(5, 1);
   EXPECT_THROW((void)coarsen_jet(jet, RefinementRule{}), ContractViolation);
 }

@@ -144,7 +144,7 @@ TEST(NewMesh, leaves_a_jet_alone_that_would_get_no_further_bead) {
   EXPECT_EQ(plan(straight_jet(Values{2.5, 0.1}), 1, 0)->arc_length.size(), 3U);
 }
 
-TEST(NewMesh, the_link_that_is_fed_is_nobodys_business) {
+TEST(NewMesh, leaves_the_link_alone_that_is_being_fed) {
   const JetState jet = straight_jet(Values{5, 1, 1, 1});
   EXPECT_FALSE(plan(jet, 1, 1));
   const auto mesh = plan(jet, 1, 0);

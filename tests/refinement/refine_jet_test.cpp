@@ -352,15 +352,6 @@ TEST(Refinement, leaves_a_jet_alone_whose_links_are_short_enough) {
   }
 }
 
-TEST(Refinement, knows_the_ceil_trap) {
-  JetState jet = straight_jet(1, 3.0000000000000004); // fifteen times 0.2
-  RefinementRule rule = cut(0.2);
-  rule.has_nozzle = false;
-  ASSERT_TRUE(refine_jet(jet, rule));
-  EXPECT_EQ(jet.links(), 15U);
-  EXPECT_FALSE(refine_jet(jet, rule));
-}
-
 TEST(Refinement, cuts_jets_of_few_beads) {
   for (const std::size_t links : {1U, 2U, 3U, 4U, 5U}) {
     const JetState old = straight_jet(links, 1);

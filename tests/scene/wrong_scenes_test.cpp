@@ -98,10 +98,6 @@ const Wrong wrong_scenes[] = {
      "rtol = 1e-5",
      "method = \"rk45\"",
      {"s.toml:23: integrator.method = \"rk45\"", "\"dormand-prince\" or \"dop853\""}},
-    {"solver_that_nobody_knows",
-     "[coulomb]",
-     "[coulomb]\nsolver = \"guess\"", //
-     {"s.toml:17: coulomb.solver = \"guess\"", "\"direct\""}},
 
     {"missing_key",
      "radius = 5e-5\n",
