@@ -1,5 +1,5 @@
-// Time of one call of a Coulomb solver, with its error next to it. Compare ratios within one
-// run: the first rows are a plain scalar loop, which depends on nothing but the processor.
+// Time of one call of a Coulomb solver, and its error. Compare ratios within one run: the first rows
+// are a plain scalar loop, whose time depends on nothing but the processor.
 
 #include "ehdjet/core/constants.hpp"
 #include "ehdjet/coulomb/direct_sum.hpp"
@@ -18,7 +18,7 @@ namespace {
 using namespace ehdjet;
 
 /// Straight for 1.6 cm, then a helix whose radius grows to 4 cm in 20 turns, 16 cm downstream:
-/// 254 cm of jet with evenly spaced beads. A uniform cube of charges would be no jet.
+/// 254 cm of jet with evenly spaced beads. A uniform cube of charges would not be like a jet.
 struct Jet {
   std::vector<double> x, y, z, q, fx, fy, fz;
 

@@ -1,5 +1,5 @@
-// What one refinement costs: a coil whose links are cut in two. Run:
-// build/release/bench/refinement_bench The time per bead should not depend on the number of beads.
+// What one refinement of a coil costs that cuts every link in two. The time per bead should not
+// depend on the number of beads. Run: build/release/bench/refinement_bench
 
 #include "ehdjet/refinement/refine_jet.hpp"
 
@@ -30,7 +30,7 @@ JetState coil(std::size_t beads) {
 void refine(benchmark::State& state, LinkRemap remap) {
   const JetState before = coil(static_cast<std::size_t>(state.range(0)) / 2);
   const RefinementRule rule{
-      .mesh = {.length = 0.5e-3}, .remap = remap, .coarsen = {}, .collector = {}};
+      .length = 0.5e-3, .remap = remap, .coarsen = {}, .collector = {}};
   std::size_t beads = 0;
   for (auto _ : state) {
     state.PauseTiming();

@@ -10,7 +10,7 @@ foreach(concept IN LISTS concepts)
 endforeach()
 
 if(NOT PROJECT_IS_TOP_LEVEL)
-  return() # a part of another project, which installs what it wants
+  return() # this is a part of another project, which decides what it installs
 endif()
 
 include(GNUInstallDirs)

@@ -94,7 +94,7 @@ struct Force {
   std::vector<double> x, y, z;
 };
 
-/// The best of some calls, two at least unless one takes long [s].
+/// The shortest time of several calls; a single one if it takes long [s].
 double time_calls(CoulombSolver& solver, const Charges& c, Force& force, double at_least) {
   using Clock = std::chrono::steady_clock;
   double best = std::numeric_limits<double>::infinity(), spent = 0;
@@ -120,7 +120,7 @@ public:
     JetState jet = jet_;
     const double length = path_length(std::as_const(jet).columns().position());
     RefinementRule rule;
-    rule.mesh.length = length / static_cast<double>(n);
+    rule.length = length / static_cast<double>(n);
     refine_jet(jet, rule);
     const auto r = std::as_const(jet).columns().position();
     Charges c;

@@ -140,9 +140,9 @@ double observed_order(const std::vector<Measured>& curve) {
   return (n * sxy - sx * sy) / (n * sxx - sx * sx);
 }
 
-/// Where an embryo's charge has grown in full the force has a kink in its second derivative. An
-/// event is looked for in a step across it, which finds its time with an order between three and
-/// four, whatever the method.
+/// When an embryo has its full charge, the second derivative of the force jumps. The event lies in a
+/// step across that instant, so that its time is found with an order between three and four by
+/// every method.
 constexpr double best_order = 3.5;
 
 void check_orders(Suite& suite, const std::vector<Measured>& measured) {

@@ -24,7 +24,7 @@ using namespace ehdjet;
 using namespace ehdjet::validation;
 using namespace ehdjet::test;
 
-/// physics.csv, whose every row is a check.
+/// physics.csv. Every row is a check.
 class Comparison {
 public:
   explicit Comparison(Suite& suite)
@@ -36,7 +36,7 @@ public:
            const std::string& source) {
     add_difference(check, value, reference, std::abs(value / reference - 1), bound, source);
   }
-  /// What has a scale of its own.
+  /// For a quantity with a scale of its own.
   void add_difference(const std::string& check, double value, double reference,
                       double difference, double bound, const std::string& source) {
     csv_.row(check, value, reference, difference, bound, int{difference <= bound}, source);

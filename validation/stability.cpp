@@ -65,8 +65,8 @@ Scene zig_zag(const Point& p) {
   return scene;
 }
 
-/// What moves a jet is charge, whose rates do not know the scale, and surface tension, whose rates
-/// grow as links shorten: the time shrinks as they overtake [s].
+/// A jet is moved by charge, whose rates do not depend on the scale, and by surface tension, whose
+/// rates grow as links become shorter. The time is shorter where surface tension is faster [s].
 double duration(const Point& p) {
   const Scene pvp_jet = zig_zag({.viscosity = 2, .modulus = 5e3});
   const double charges =
@@ -76,16 +76,16 @@ double duration(const Point& p) {
   return 1e-4 * std::min(1.0, charges / *rates.surface_tension);
 }
 
-/// Numbers between -1 and 1 without pattern.
+/// Pseudo-random numbers between -1 and 1.
 double noise(std::size_t i) {
   return std::sin(12.9898 * static_cast<double>((i + 1) * (i + 1)));
 }
 
 enum class Modes { longitudinal, uncharged };
 
-/// A straight chain between two held beads, and noise, too little for anything but linear theory.
-/// Charges make bends grow, in fact and in every method: with them there is noise along the chain
-/// only.
+/// A straight chain between two held beads with noise that is small enough for linear theory.
+/// Charges make bends grow in reality and with every method. With charges the noise is therefore
+/// along the chain only.
 Scene straight_chain(const Point& p, Modes modes) {
   Scene scene = zig_zag(p);
   scene.config.chain->fixed = FixedEnds::both;
@@ -111,7 +111,7 @@ constexpr double longest_step = 0.01; // that is tried [s]
 
 struct Unbounded {};
 
-/// Ends a run whose links or stresses no chain between held beads could have.
+/// Ends a run whose links or stresses are impossible in a chain between held beads.
 void require_bounded(const JetState& jet, const Point& p) {
   const auto c = jet.columns();
   for (std::size_t k = 1; k < jet.beads(); ++k) {
@@ -131,7 +131,7 @@ bool stays_bounded(const Point& p, Modes modes, const std::string& method, doubl
     simulation->run_until(steps * step);
   } catch (const Unbounded&) {
     return false;
-  } catch (const RunError&) { // beads run into each other, or are nowhere
+  } catch (const RunError&) { // beads run into each other, or a state is not a number
     return false;
   }
   return true;
@@ -166,7 +166,7 @@ std::optional<StabilityLimits> theory(const Point& p, const std::string& method)
 
 struct TooMany {};
 
-/// The jet at the end, and its right-hand sides.
+/// The jet at the end, and the number of its right-hand sides.
 struct End {
   JetState jet;
   std::uint64_t evaluations = 0;
@@ -274,7 +274,8 @@ std::vector<double> settings(const Point& p, const std::string& method) {
   return all;
 }
 
-/// Least evaluations for an error, which the next finer setting must keep: no lucky hits.
+/// Least evaluations for an error. The next finer setting must keep the error, too, so that a lucky
+/// result does not count.
 std::optional<std::uint64_t>
 evaluations_for(double error, const std::vector<std::pair<std::uint64_t, double>>& curve) {
   for (std::size_t i = 0; i + 1 < curve.size(); ++i)
@@ -296,7 +297,7 @@ Cost cost(const Point& p, const std::string& method, const Reference& exact) {
       curve.emplace_back(end.evaluations, distance(end.jet, exact.jet, p));
     } catch (const TooMany&) {
       break;
-    } catch (const RunError& e) { // a finer setting may get past it
+    } catch (const RunError& e) { // a finer setting may not fail
       if (curve.empty()) stopped = short_reason(e.what());
       curve.emplace_back(0, infinity);
     }
@@ -360,7 +361,7 @@ std::vector<Point> main_slice(const Suite& suite) {
   return all;
 }
 
-/// One thing changed at a time.
+/// Points that change one parameter at a time.
 std::vector<Point> other_slices() {
   std::vector<Point> all;
   for (const double mu : {1e-3, 1.0, 1e4})
@@ -394,7 +395,7 @@ std::string cell(const std::vector<Measured>& map, double mu, double g,
   return "";
 }
 
-/// The main slice for people.
+/// The main slice as a table to read.
 void write_markdown(const fs::path& file, const std::vector<Measured>& map) {
   const auto moduli = sorted(map, &Point::modulus);
   std::string text = "# Right-hand sides for an error of 1e-4 link lengths\n\n"

@@ -1,8 +1,8 @@
 // How does the error of the Coulomb solver carry into what a run computes?
 //
 // Jets of 20 ms and the growth of a bending wave, with each solver and tolerance, against the
-// direct sum at the same rtol; and the integrator's own error, rtol 1e-5 against 1e-8, to compare
-// it with. Writes trajectory.csv.
+// direct sum at the same rtol. The integrator's own error, rtol 1e-5 against 1e-8, is there for
+// comparison. Writes trajectory.csv.
 
 #include <chrono>
 #include <limits>

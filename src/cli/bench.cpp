@@ -3,21 +3,18 @@
 #include "ehdjet/core/error.hpp"
 #include "ehdjet/io/text_output.hpp"
 #include "ehdjet/scene/read_scene.hpp"
-#include "ehdjet/simulation/build.hpp"
+#include "ehdjet/studies/table2.hpp"
 
 #include <omp.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdint>
 #include <filesystem>
 #include <fmt/format.h>
 #include <memory>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "interrupt.hpp"
@@ -29,17 +26,6 @@ namespace ehdjet::cli {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// A row of the paper's Table 2 (24 cores, RK4 with steps of 1e-8 s, 0.2 s simulated).
-struct PaperRow {
-  std::string_view name, scene;
-  int beads, processors;
-  double wall, efficiency; // [s], [-]
-};
-constexpr std::array<PaperRow, 4> paper_rows{{{"none", "table2_none", 150, 24, 8787, 0.26},
-                                              {"0.8", "table2_08", 267, 24, 12718, 0.44},
-                                              {"0.4", "table2_04", 509, 24, 24726, 0.62},
-                                              {"0.2", "table2_02", 1123, 24, 75793, 0.80}}};
 
 struct BenchOptions {
   std::vector<std::string> rows, overrides;
@@ -60,85 +46,34 @@ std::vector<std::string> overrides_of(const BenchOptions& options) {
   return all;
 }
 
-/// A mean over time of something that changes only at the ends of steps.
-class TimeMean {
-public:
-  explicit TimeMean(double from)
-      : from_(from) {}
-  void add(double start, double end, double value) {
-    const double time = end - std::max(start, from_);
-    if (time > 0) sum_ += value * time, time_ += time;
-  }
-  [[nodiscard]] double value() const { return sum_ / time_; }
-
-private:
-  double from_, sum_ = 0, time_ = 0;
-};
-
-/// Beads right before each refinement: what the paper's run would have counted at its multiples of
-/// t_ref.
-class BeadsBefore final : public Observer {
-public:
-  explicit BeadsBefore(double from)
-      : from_(from) {}
-  void refined(const RefinementRecord& record) override {
-    if (record.time >= from_) sum_ += static_cast<double>(record.beads_before), ++count_;
-  }
-  [[nodiscard]] double mean() const { return sum_ / static_cast<double>(count_); }
-
-private:
-  double from_, sum_ = 0;
-  std::uint64_t count_ = 0;
-};
-
-struct Measured {
-  double mean_beads = 0, stationary_beads = 0, beads_before = 0;
-  std::uint64_t evaluations = 0;
-  double wall = 0; // [s]
-};
-
-Measured measure(Scene scene, double stationary_from, std::size_t threads, bool quiet) {
-  use_threads(threads);
-  if (scene.config.refinement) scene.config.output.refinements = RefinementRecords::sums;
-  const auto simulation = build_simulation(scene);
-  auto observer = std::make_unique<BeadsBefore>(stationary_from);
-  const BeadsBefore& before = *observer;
-  simulation->add(std::move(observer));
-
+Table2Run measure(const Scene& scene, double stationary_from, std::size_t threads,
+                  bool quiet) {
   const double end = scene.config.run.end_time;
   std::optional<Progress> progress;
   if (!quiet) progress.emplace(0.0, end);
-  TimeMean all(0), stationary(stationary_from);
-  double time = 0;
-  auto beads = static_cast<double>(simulation->jet().links());
   const InterruptGuard interrupt;
-  simulation->after_each_step([&](const Simulation& s) {
-    all.add(time, s.jet().time, beads), stationary.add(time, s.jet().time, beads);
-    time = s.jet().time, beads = static_cast<double>(s.jet().links());
+  const auto after_step = [&](const Simulation& s) {
     if (progress) progress->show(s);
     if (const char* signal = InterruptGuard::signal_name())
       throw RunError(fmt::format("stopped by {}", signal));
-  });
-  simulation->run_until(end);
-  return {.mean_beads = all.value(),
-          .stationary_beads = stationary.value(),
-          .beads_before = before.mean(),
-          .evaluations = simulation->statistics().evaluations,
-          .wall = simulation->statistics().wall_time};
+  };
+  return run_table2(scene, end, stationary_from, threads, {}, after_step);
 }
 
 struct Row {
-  const PaperRow* paper;
+  const Table2Row* paper;
   double end_time;
-  std::optional<Measured> serial;
-  Measured parallel;
+  std::optional<Table2Run> serial;
+  Table2Run parallel;
 
   [[nodiscard]] std::optional<double> efficiency(std::size_t threads) const {
     if (!serial) return std::nullopt;
-    return serial->wall / (parallel.wall * static_cast<double>(threads));
+    return serial->statistics.wall_time
+           / (parallel.statistics.wall_time * static_cast<double>(threads));
   }
   [[nodiscard]] double microseconds() const { // per evaluation, with all threads
-    return 1e6 * parallel.wall / static_cast<double>(parallel.evaluations);
+    return 1e6 * parallel.statistics.wall_time
+           / static_cast<double>(parallel.statistics.evaluations);
   }
 };
 
@@ -152,13 +87,14 @@ void write_csv(TextOutput& out, const std::vector<Row>& rows, std::size_t thread
             "threads,wall_1_s,wall_s,efficiency,evaluations,us_per_evaluation,paper_beads,"
             "paper_threads,paper_wall_s,paper_efficiency\n");
   for (const Row& r : rows) {
-    const Measured& m = r.parallel;
+    const Table2Run& m = r.parallel;
     out.print("{},{},{:.3f},{:.3f},{},{},{},{:.3f},{},{},{:.3f},{},{},{:.0f},{}\n",
-              r.paper->name == "none" ? "" : r.paper->name, r.end_time, m.mean_beads,
+              r.paper->length == 0 ? "" : r.paper->name, r.end_time, m.mean_beads,
               m.stationary_beads, number(m.beads_before, 3), threads,
-              r.serial ? number(r.serial->wall, 3) : "", m.wall,
-              number(r.efficiency(threads), 4), m.evaluations, r.microseconds(),
-              r.paper->beads, r.paper->processors, r.paper->wall, r.paper->efficiency);
+              r.serial ? number(r.serial->statistics.wall_time, 3) : "",
+              m.statistics.wall_time, number(r.efficiency(threads), 4),
+              m.statistics.evaluations, r.microseconds(), r.paper->beads,
+              r.paper->processors, r.paper->wall, r.paper->efficiency);
   }
   out.close();
 }
@@ -173,15 +109,16 @@ std::string markdown(const std::vector<Row>& rows, std::size_t threads) {
                                  threads);
   double wall = 0, paper = 0;
   for (const Row& r : rows) {
-    const Measured& m = r.parallel;
+    const Table2Run& m = r.parallel;
     text += fmt::format(
         "| {} | {} | {:.1f} | {:.1f} | {} | {} | {:.2f} | {} | {} | {:.1f} | {} | "
         "{:.0f} | {} |\n",
         r.paper->name, r.end_time, m.mean_beads, m.stationary_beads,
-        number(m.beads_before, 1), r.serial ? number(r.serial->wall, 2) : "", m.wall,
-        number(r.efficiency(threads), 2), m.evaluations, r.microseconds(), r.paper->beads,
-        r.paper->wall, r.paper->efficiency);
-    wall += m.wall, paper += r.paper->wall;
+        number(m.beads_before, 1),
+        r.serial ? number(r.serial->statistics.wall_time, 2) : "", m.statistics.wall_time,
+        number(r.efficiency(threads), 2), m.statistics.evaluations, r.microseconds(),
+        r.paper->beads, r.paper->wall, r.paper->efficiency);
+    wall += m.statistics.wall_time, paper += r.paper->wall;
   }
   return text
          + fmt::format(
@@ -197,15 +134,15 @@ std::string provenance() {
 }
 
 void bench_table2(const BenchOptions& options) {
-  std::vector<const PaperRow*> chosen;
-  chosen.reserve(paper_rows.size());
-  for (const PaperRow& row : paper_rows)
+  std::vector<const Table2Row*> chosen;
+  chosen.reserve(table2.size());
+  for (const Table2Row& row : table2)
     if (options.rows.empty()
         || std::ranges::find(options.rows, row.name) != options.rows.end())
       chosen.push_back(&row);
   std::vector<Scene> scenes; // all are read before anything runs
   scenes.reserve(chosen.size());
-  for (const PaperRow* row : chosen)
+  for (const Table2Row* row : chosen)
     scenes.push_back(
         read_scene(fs::path(options.scenes) / fmt::format("{}.toml", row->scene),
                    overrides_of(options)));
@@ -222,7 +159,7 @@ void bench_table2(const BenchOptions& options) {
     const auto run = [&](std::size_t p) {
       if (!options.quiet)
         fmt::print(stderr, "L~ = {}{}, {} thread{}, {} s\n", chosen[i]->name,
-                   chosen[i]->name == "none" ? "" : " cm", p, p == 1 ? "" : "s", end);
+                   chosen[i]->length == 0 ? "" : " cm", p, p == 1 ? "" : "s", end);
       return measure(scenes[i], from, p, options.quiet);
     };
     Row row{.paper = chosen[i], .end_time = end, .serial = {}, .parallel = {}};
@@ -247,8 +184,8 @@ void add_bench_command(CLI::App& app) {
   CLI::App* command = bench->add_subcommand(
       "table2", "Cost against the refinement length, next to the paper's Table 2");
   std::vector<std::string> names;
-  names.reserve(paper_rows.size());
-  for (const PaperRow& row : paper_rows) names.emplace_back(row.name);
+  names.reserve(table2.size());
+  for (const Table2Row& row : table2) names.emplace_back(row.name);
   command
       ->add_option("--rows", options->rows,
                    "Rows, separated by commas: none,0.8,0.4,0.2 (L~ in cm); default: all")

@@ -29,7 +29,8 @@ struct CalibrateOptions {
 
 void calibrate(const CalibrateOptions& options) {
   use_threads(options.threads);
-  TextOutput output(options.output, options.force); // an existing file is refused now
+  TextOutput output(options.output,
+                    options.force); // an existing file is refused before the measurement
   fmt::print(stderr, "timing the Coulomb solvers, about half a minute\n");
   const CostModel model = CostModel::measured(options.simd);
   output.print("{}",
@@ -49,7 +50,7 @@ void calibrate(const CalibrateOptions& options) {
 void add_calibration_option(CLI::App& command, std::string& file) {
   command
       .add_option("--calibration", file,
-                  "Costs that solver = \"auto\" goes by, written by `ehdjet calibrate`")
+                  "Costs by which solver = \"auto\" chooses, written by `ehdjet calibrate`")
       ->type_name("FILE");
 }
 
@@ -64,7 +65,7 @@ std::vector<std::string> with_calibration(std::vector<std::string> overrides,
 void add_calibrate_command(CLI::App& app) {
   auto options = std::make_shared<CalibrateOptions>();
   CLI::App* command = app.add_subcommand(
-      "calibrate", "Measure what the Coulomb solvers cost here, for solver = \"auto\"");
+      "calibrate", "Measure the costs of the Coulomb solvers here, for solver = \"auto\"");
   command->add_option("-o,--output", options->output, "File to write (TOML)")
       ->capture_default_str();
   add_threads_option(*command, options->threads);

@@ -28,7 +28,7 @@ void check(const CheckOptions& options) {
   }
   const Scene scene =
       read_scene(options.scene, with_calibration(options.overrides, options.calibration));
-  build_simulation(scene); // finds what only the composition can find
+  build_simulation(scene); // finds errors that only appear when the objects are built
   fmt::print("{}", scene_report(scene));
 }
 

@@ -47,7 +47,7 @@ void run_export(const Options& options) {
 } // namespace
 
 void add_export_command(CLI::App& app) {
-  auto options = std::make_shared<Options>(); // lives as long as the callback
+  auto options = std::make_shared<Options>(); // shared with the callback
   CLI::App* command = app.add_subcommand(
       "export", "Write parts of a run file as CSV, XYZ or VTK (SI units)");
   command->add_option("run", options->run, "Run file (HDF5)")
@@ -59,9 +59,9 @@ void add_export_command(CLI::App& app) {
                    "CSV: the beads of one frame, the last one by default");
   format->add_flag("--deposit", options->deposit, "CSV: the deposited fibre");
   format->add_flag("--refinements", options->refinements,
-                   "CSV: what each mesh refinement did");
+                   "CSV: changes by each mesh refinement");
   format->add_flag("--budget", options->budget,
-                   "CSV: energy and momentum over time, and what does not add up");
+                   "CSV: energy and momentum over time, and their residual");
   CLI::Option* power =
       format->add_flag("--resolving-power", options->resolving_power,
                        "CSV: mean and least resolving power link_length/l along the jet");
@@ -74,7 +74,7 @@ void add_export_command(CLI::App& app) {
       ->type_name("T");
   command
       ->add_option("--from", options->from,
-                   "Mean over times from this one on [s]; default: the later half")
+                   "Mean over the times from this one on [s]; default: the second half")
       ->type_name("T")
       ->needs(power);
   command

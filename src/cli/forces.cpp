@@ -72,7 +72,7 @@ void forces(const ForcesOptions& options) {
     solver_options.costs = read_calibration(options.calibration);
   const auto solver = make_coulomb_solver(solver_options);
   const Charges c = read_charges(options.beads);
-  std::optional<TextOutput> output; // before the work: an existing file is refused now
+  std::optional<TextOutput> output; // an existing file is refused before the work
   if (!options.output.empty()) output.emplace(options.output, options.force);
 
   const std::size_t n = c.q.size();
@@ -90,7 +90,8 @@ void forces(const ForcesOptions& options) {
     fmt::print(stderr, "ehdjet: {} pairs of charges at zero distance were skipped\n",
                solver->coincident_pairs());
 
-  CoulombErrorSample error; // the direct sum is what errors are measured against
+  CoulombErrorSample
+      error; // stays zero for the direct sum, against which errors are measured
   if (solver->name() != "direct") error = sampled_error(c.positions(), c.q, force);
   if (solver->name() == "auto") fmt::print(stderr, "{}\n", solver->description());
   if (output) {

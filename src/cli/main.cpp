@@ -15,7 +15,7 @@
 #include "run.hpp"
 #include "version.hpp"
 
-// Exit codes: 0 done, 1 the run failed, 2 the input is wrong, 3 a bug in ehdjet.
+// Exit codes: 0 success, 1 the run failed, 2 the input is wrong, 3 a bug in ehdjet.
 // NOLINTNEXTLINE(bugprone-exception-escape): of the handlers' own text
 int main(int argc, char** argv) {
   CLI::App app{"ehdjet: electrically charged jets as chains of beads", "ehdjet"};

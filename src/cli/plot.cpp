@@ -29,7 +29,7 @@ struct Options {
   bool force = false;
 };
 
-// A file for a while.
+// A temporary file.
 struct Scratch {
   fs::path path;
   explicit Scratch(fs::path p)
@@ -87,7 +87,7 @@ void run_plot(const Options& options) {
 } // namespace
 
 void add_plot_command(CLI::App& app) {
-  auto options = std::make_shared<Options>(); // lives as long as the callback
+  auto options = std::make_shared<Options>(); // shared with the callback
   CLI::App* command =
       app.add_subcommand("plot", "Draw a run file on one page (needs gnuplot)");
   command->add_option("run", options->run, "Run file (HDF5)")

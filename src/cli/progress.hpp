@@ -26,7 +26,7 @@ private:
   bool terminal_;
   double start_time_, end_time_, interval_, next_;
   std::deque<Sample>
-      recent_; // the cost of a millisecond grows with the jet: only the last ones
+      recent_; // only the last ones, because the cost of a millisecond grows with the jet
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 

@@ -54,7 +54,7 @@ const Stage& ActingChain::at(double t, std::span<const double> y, BeadRange targ
 //
 // To fly on with the velocity of the crossing is right to second order in the time since then,
 // which is less than a step. All beads but the last one of those that have passed have left the
-// chain: they act on nobody.
+// chain and act on no other bead.
 void ActingChain::absorb(std::span<const double> y) {
   const auto r = stage_.columns.position(), v = stage_.columns.velocity();
   const auto rests = [&](std::size_t k) { return support(k) == Support::collector; };

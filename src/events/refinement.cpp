@@ -68,7 +68,7 @@ void Refinement::pass(double t) {
 bool Refinement::changes(const JetState& jet) const {
   if (rule_.coarsen)
     if (JetState copy = jet; coarsen_jet(copy, rule_)) return true;
-  return plan_mesh(JetString(jet), jet, rule_.first_knot(), rule_.mesh).has_value();
+  return plan_mesh(JetString(jet), rule_.first_knot(), rule_.length).has_value();
 }
 
 void Refinement::apply(EventContext& context) {

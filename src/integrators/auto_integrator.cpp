@@ -13,10 +13,10 @@ namespace {
 
 constexpr std::string_view explicit_method = "dormand-prince";
 constexpr int steps_between_looks = 8;
-// Steps are short for a while after each event, whatever the stiffness: that must not count.
+// After each event steps are short for a while, also where nothing is stiff. They are not compared.
 constexpr int looks_to_leave_explicit = 3, first_patience = 24, most_patience = 1 << 20;
 constexpr double leave_explicit = 0.7, leave_implicit = 0.25;
-// The first step is a cautious guess: accuracy will allow more.
+// The first step is a cautious guess; accuracy allows longer steps later.
 constexpr double start_implicit = 1;
 
 double least_stable_radius(const ButcherTableau& method) {
@@ -78,7 +78,7 @@ void AutoIntegrator::reconsider(OdeSystem& system, double t, std::span<const dou
   steps_to_look_ = change ? 1 : steps_between_looks;
   in_a_row_ = change ? in_a_row_ + 1 : 0;
   if (in_a_row_ < (is_explicit ? looks_to_leave_explicit : patience_)) return;
-  // Leaving the implicit method was no good idea if it is wanted again so soon.
+  // If the implicit method is needed again so soon, it is left later the next time.
   if (is_explicit && left_implicit_ && steps_ < 4 * patience_)
     patience_ = std::min(2 * patience_, most_patience);
   left_implicit_ = !is_explicit;

@@ -21,10 +21,12 @@ double ErrorScale::norm(std::span<const double> error, std::span<const double> y
       const double size = std::max(std::abs(a[i]), std::abs(b[i]));
       const double ratio = std::abs(e[i]) / (s + size);
       largest = std::max(largest, ratio);
-      squares += ratio * ratio + 0 * b[i]; // an infinite end would allow any error
+      squares +=
+          ratio * ratio
+          + 0 * b[i]; // not a number if the end is infinite, which would allow any error
     }
   }
-  // A maximum forgets a NaN, a sum does not.
+  // std::max can lose a NaN; a sum keeps it.
   if (!std::isfinite(squares)) return squares;
   if (root_mean_square) largest = std::sqrt(squares / static_cast<double>(error.size()));
   return largest / rtol;

@@ -31,6 +31,7 @@ std::vector<std::array<double, 3>> dense_weights(const std::vector<double>& alph
   powers(0, 0) = 1, powers(1, 1) = 1. / 2, powers(3, 2) = 1. / 3;
   const Eigen::Matrix<double, 4, 3> b = conditions.partialPivLu().solve(powers);
   std::vector<std::array<double, 3>> weights;
+  weights.reserve(4);
   for (int i = 0; i < 4; ++i) weights.push_back({b(i, 0), b(i, 1), b(i, 2)});
   return weights;
 }

@@ -66,7 +66,7 @@ StepOutcome RungeKutta::attempt(OdeSystem& system, double t, double h,
 double RungeKutta::estimated_error() {
   std::array<double, 2> norms{};
   for (std::size_t e = method_->error.size();
-       e-- > 0;) { // the first one last: kept in error_
+       e-- > 0;) { // the first estimate is computed last and stays in error_
     WeightedVectors sum;
     for (std::size_t j = 0; j < method_->error[e].size(); ++j)
       sum.add(k_[j].data(), h_ * method_->error[e][j]);
@@ -122,8 +122,8 @@ void RungeKutta::dense_output(double theta, std::size_t first,
 void RungeKutta::commit(std::vector<double>& y) {
   y.swap(y1_);
   if (end_known_) k_.front().swap(k_[method_->stages.size()]);
-  // At t_ + h_, which may differ from the next t by round-off: only a method that always knows it
-  // may use it, lest a look into the step change the jet.
+  // It is evaluated at t_ + h_, which may differ from the next t by round-off. Only a method that
+  // always evaluates it may use it; otherwise a read inside the step would change the jet.
   first_known_ = end_known_ && error_needs_end_;
 }
 

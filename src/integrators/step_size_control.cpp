@@ -11,11 +11,12 @@ constexpr double safety = 0.9, smallest_factor = 0.2, largest_factor = 5, beta =
 } // namespace
 
 double StepSizeControl::after_accepted(double h, double error) {
-  error = std::max(error, 1e-10); // an error of zero says nothing about the next step
+  error = std::max(error,
+                   1e-10); // an error of zero does not tell how long the next step can be
   const double factor = safety * std::pow(error, -(1.0 / order_ - 0.75 * beta))
                         * std::pow(previous_error_, beta);
   previous_error_ = std::max(error, 1e-4);
-  // A step that follows a rejection may not grow: it would be rejected again.
+  // A step that follows a rejection must not grow, or it would be rejected again.
   const double most = rejected_ ? 1.0 : largest_factor;
   rejected_ = false;
   return h * std::clamp(factor, smallest_factor, most);

@@ -79,7 +79,7 @@ public:
     if (rule_.remap == LinkRemap::paper) {
       remap_radius();
     } else {
-      const Remap remap = remap_with(rule_.spread);
+      const Remap remap = behind_kept();
       for (const auto column : {&JetState::volume, &JetState::mass, &JetState::charge})
         std::ranges::copy(remap(behind_s(old_.*column)), fresh(jet_.*column).begin());
     }
@@ -100,13 +100,12 @@ private:
   [[nodiscard]] std::span<const double> behind_s(std::span<const double> column) const {
     return column.subspan(s_ + 1);
   }
-  [[nodiscard]] Remap remap_with(Spread spread) const {
-    const auto& knots = string_.arc_length;
-    const double start = knots[mesh_.kept];
-    Values from(knots.begin() + static_cast<std::ptrdiff_t>(mesh_.kept), knots.end());
-    Values to{start};
+  // From the old links behind s to the new ones.
+  [[nodiscard]] Remap behind_kept() const {
+    const auto start = string_.arc_length.begin() + static_cast<std::ptrdiff_t>(mesh_.kept);
+    Values to{*start};
     to.insert(to.end(), mesh_.arc_length.begin(), mesh_.arc_length.end());
-    return {std::move(from), std::move(to), spread};
+    return {Values(start, string_.arc_length.end()), to};
   }
 
   // The leading bead stays where it is, to the last bit; no other one lies beyond the collector.
@@ -135,7 +134,7 @@ private:
     std::ranges::transform(column, weight, product.begin(), std::multiplies{});
     Values from = cumulative(weight), to = cumulative(new_weight);
     to.back() = from.back();
-    const Values moved = Remap(std::move(from), std::move(to), Spread::linear)(product);
+    const Values moved = Remap(from, to)(product);
     std::ranges::transform(moved, new_weight, fresh(jet_.columns().column(c)).begin(),
                            std::divides{});
   }
@@ -196,7 +195,7 @@ double worst_link(const JetState& jet, std::size_t s, const JetString& string,
 std::optional<MeshChange> refine_jet(JetState& jet, const RefinementRule& rule) {
   if (jet.links() < jet.first()) return std::nullopt;
   const JetString string(jet);
-  const auto mesh = plan_mesh(string, jet, rule.first_knot(), rule.mesh);
+  const auto mesh = plan_mesh(string, rule.first_knot(), rule.length);
   if (!mesh) return std::nullopt;
   const std::size_t s = string.bead(mesh->kept);
   JetState refined = Remeshing(jet, string, *mesh, rule).run();

@@ -16,9 +16,9 @@ namespace {
 constexpr double default_rtol = 1e-6;
 /// More rows than this are a mistyped interval: 1e8 rows of observables are 10 GB.
 constexpr double most_rows = 1e8;
-/// Steps that nobody waits for: weeks with 100 beads.
+/// So many steps would take weeks with 100 beads.
 constexpr double too_many_steps = 1e8;
-/// Fewer are refused too if stability asks for steps so much shorter than accuracy does.
+/// Fewer steps are refused, too, if stability needs steps that are so much shorter than accuracy's.
 constexpr double many_steps = 1e6, far_below = 1e-3;
 
 void check_jet(const SceneConfig& c, const SceneText& text) {
@@ -81,11 +81,12 @@ void settle_step(IntegratorConfig& i, const SceneText& text) {
                     "or fixed. Remove one",
                     *i.rtol, *i.step));
   if (i.step && method.kind == MethodKind::chooses)
-    text.fail("integrator.step",
-              fmt::format("integrator.step = {} s and {}: a choice of method goes by the "
-                          "steps that a tolerance allows. Name a method, or give "
-                          "integrator.rtol instead",
-                          *i.step, method_is));
+    text.fail(
+        "integrator.step",
+        fmt::format("integrator.step = {} s and {}: \"auto\" chooses the "
+                    "method by the steps that a tolerance allows. Name a method, or give "
+                    "integrator.rtol instead",
+                    *i.step, method_is));
   if (i.rtol && !has_error_estimate)
     text.fail(
         "integrator.rtol",
@@ -172,36 +173,12 @@ void check_refinement(const SceneConfig& c, const SceneText& text) {
            fmt::format("refinement.interval = {} s and run.end_time = {} s: no refinement "
                        "would happen",
                        r.interval, c.run.end_time));
-  if (r.spread && r.remap == LinkRemap::paper)
-    refuse("spread",
-           "refinement.spread and refinement.remap = \"paper\": the spread belongs "
-           "to the conservative remap. Remove one");
-  const bool weighted = r.weight != MeshWeight::uniform;
-  for (const auto& [name, value] : {std::pair{"weight_strength", r.weight_strength},
-                                    {"shortest", r.shortest},
-                                    {"longest", r.longest}})
-    if (value && !weighted)
-      refuse(name, fmt::format("refinement.{} = {} needs a refinement.weight other than "
-                               "\"uniform\": a uniform mesh has equal links",
-                               name, *value));
-  if (r.weight == MeshWeight::stress && !c.viscoelasticity)
-    refuse("weight", "refinement.weight = \"stress\" needs [viscoelasticity]: without it "
-                     "there is no stress");
-  if (r.shortest && *r.shortest > r.length)
-    refuse("shortest",
-           fmt::format("refinement.shortest = {} m and refinement.length = {} m: "
-                       "must be at most the mean link",
-                       *r.shortest, r.length));
-  if (r.longest && *r.longest < r.length)
-    refuse("longest", fmt::format("refinement.longest = {} m and refinement.length = {} m: "
-                                  "must be at least the mean link",
-                                  *r.longest, r.length));
-  const double shortest_cut = r.shortest.value_or(r.length / 2);
-  if (r.coarsen && *r.coarsen > shortest_cut)
-    refuse("coarsen",
-           fmt::format("refinement.coarsen = {} m: must be at most {} m, or links would be "
-                       "joined that have just been cut",
-                       *r.coarsen, shortest_cut));
+  if (r.coarsen && *r.coarsen > r.length / 2)
+    refuse(
+        "coarsen",
+        fmt::format("refinement.coarsen = {} m: must be at most {} m, half of "
+                    "refinement.length, or links would be joined that have just been cut",
+                    *r.coarsen, r.length / 2));
 }
 
 void check_varicosity(const SceneConfig& c, const SceneText& text) {

@@ -85,8 +85,8 @@ struct Reference {
 std::string key_reference() {
   Reference reference;
   reference.text =
-      "# Keys of a scene file\n\nScene files are TOML, in SI units. A table that is "
-      "not there is a feature that the run does not have.\n";
+      "# Keys of a scene file\n\nScene files are TOML, in SI units. If a table is "
+      "absent, the run does not have that feature.\n";
   reference.heading("(top level)", "Before the first table.");
   SceneConfig config;
   describe(reference, config);

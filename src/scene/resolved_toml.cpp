@@ -30,8 +30,8 @@ std::string unit_of(const auto&) {
   return "";
 }
 
-/// Schema visitor: writes what the scene has. An absent optional key is a comment that says
-/// what holds instead; an absent table leaves no trace.
+/// Schema visitor: writes what the scene has. An absent optional key becomes a comment that says
+/// what holds instead; an absent table is left out.
 struct Printer {
   std::string text;
 

@@ -133,12 +133,10 @@ std::string jet_text(const Scene& scene) {
 
 std::string refinement_text(const SceneConfig& c) {
   const RefinementConfig& r = *c.refinement;
-  std::string text = fmt::format(
-      "  refinement: every {} s, where links are longer than {} m; {} mesh, {} remap",
-      r.interval, r.length, name_of(r.weight, refinement_weights),
-      name_of(r.remap, refinement_remaps));
+  std::string text =
+      fmt::format("  refinement: every {} s, where links are longer than {} m; {} remap",
+                  r.interval, r.length, name_of(r.remap, refinement_remaps));
   if (r.coarsen) text += fmt::format("; links together below {} m are joined", *r.coarsen);
-  if (r.max_beads) text += fmt::format("; at most {} beads", *r.max_beads);
   return text + '\n';
 }
 

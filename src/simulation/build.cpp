@@ -37,21 +37,13 @@ std::optional<Varicosity> varicosity_of(const SceneConfig& c) {
 
 RefinementRule refinement_rule(const SceneConfig& c) {
   const RefinementConfig& r = *c.refinement;
-  RefinementRule rule{
-      .mesh = {.length = r.length,
-               .weight = r.weight,
-               .strength = r.weight_strength.value_or(1),
-               .shortest = r.shortest.value_or(0),
-               .longest = r.longest.value_or(MeshRule{}.longest),
-               .most_links = r.max_beads.value_or(MeshRule{}.most_links),
-               .refused_above = r.max_beads.value_or(MeshRule{}.refused_above)},
-      .remap = r.remap,
-      .spread = r.spread.value_or(Spread::linear),
-      .velocity = r.velocity,
-      .stress = r.stress,
-      .coarsen = r.coarsen,
-      .collector = {},
-      .has_nozzle = c.nozzle.has_value()};
+  RefinementRule rule{.length = r.length,
+                      .remap = r.remap,
+                      .velocity = r.velocity,
+                      .stress = r.stress,
+                      .coarsen = r.coarsen,
+                      .collector = {},
+                      .has_nozzle = c.nozzle.has_value()};
   if (c.collector) rule.collector = c.collector->distance;
   return rule;
 }

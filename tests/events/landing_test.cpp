@@ -152,7 +152,6 @@ TEST(Landing, at_step_ends_freezes_all_that_have_passed_the_collector) {
   EXPECT_EQ(simulation->jet().columns().position()[3].x(), h);
 }
 
-// A Maxwell link below an interior landed bead stretches by the lower bead's velocity alone.
 // Bead 0 of a chain is a bead like any other unless it is held; the nozzle never lands.
 TEST(Landing, a_free_bead_0_lands_and_a_held_one_does_not) {
   const std::vector<Start> both_arrive{{h - 0.002, 2, 1}, {h - 0.003, 6, 2}};
@@ -173,6 +172,7 @@ TEST(Landing, a_free_bead_0_lands_and_a_held_one_does_not) {
   EXPECT_EQ(held->jet().landed[0].bead, 1U);
 }
 
+// A Maxwell link below an interior landed bead stretches by the lower bead's velocity alone.
 TEST(Landing, the_link_below_a_landed_interior_bead_sees_it_at_rest) {
   Scene scene = flight(overtaking);
   scene.config.viscoelasticity = ViscoelasticityConfig{

@@ -9,7 +9,7 @@ set(prefix ${WORK}/prefix)
 file(REMOVE_RECURSE ${WORK})
 run(${CMAKE_COMMAND} --install ${BUILD} --config ${CONFIG} --prefix ${prefix})
 
-# The package must survive the trees it came from.
+# The package must work without the source and build folders.
 file(GLOB_RECURSE package_files ${prefix}/*.cmake)
 foreach(file IN LISTS package_files)
   file(READ ${file} text)
@@ -27,6 +27,6 @@ run(${CMAKE_COMMAND} -G ${GENERATOR} -S ${CMAKE_CURRENT_LIST_DIR}/consumer -B ${
   -D CMAKE_CXX_FLAGS=${CXX_FLAGS})
 run(${CMAKE_COMMAND} --build ${WORK}/build --config ${CONFIG} --target consumer run_consumer)
 
-# The command, and a scene where it is documented to be.
+# The command works, and a scene is in its documented place.
 run(${prefix}/bin/ehdjet --version)
 run(${prefix}/bin/ehdjet check ${prefix}/share/ehdjet/scenes/quickstart.toml)

@@ -178,7 +178,7 @@ TEST(RunFile, the_radius_in_a_frame_keeps_the_volume_of_each_link) {
     const std::size_t first = f.rows() > 1 && f["embryo"][1] != 0 ? 2 : 1;
     EXPECT_EQ(f["radius"][0], f["radius"][first]);
     for (std::size_t b = 1; b < f.rows(); ++b) {
-      const std::size_t up = b == first ? 0 : b - 1; // an embryo is nobody's neighbour
+      const std::size_t up = b == first ? 0 : b - 1; // an embryo is not a neighbour
       const double l = std::hypot(f["x"][b] - f["x"][up], f["y"][b] - f["y"][up],
                                   f["z"][b] - f["z"][up]);
       const double volume = std::numbers::pi * f["radius"][b] * f["radius"][b] * l;

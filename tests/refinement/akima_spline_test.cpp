@@ -52,7 +52,6 @@ double worst_error(const Values& knots, const std::function<double(double)>& f) 
   return worst;
 }
 
-// Validation 6.1.
 TEST(AkimaSpline, runs_through_akimas_own_data_as_his_does) {
   const Values x{0, 2, 3, 5, 6, 8, 9, 11, 12, 14, 15};
   const Values y{10, 10, 10, 10, 10, 10, 10.5, 15, 50, 60, 85};
@@ -138,7 +137,7 @@ TEST(AkimaSpline, reproduces_lines_on_any_mesh) {
   EXPECT_LE(worst_error(wild, f), 20 * epsilon);
 }
 
-// Validation 6.2: an interpolation "exact for quadratics" on any mesh is not Akima's.
+// An interpolation "exact for quadratics" on any mesh is not Akima's.
 TEST(AkimaSpline, reproduces_parabolas_on_uniform_meshes_only) {
   const auto square = [](double x) { return x * x; };
   EXPECT_LE(worst_error(uniform(9, 0.125), square), 7e-15);
@@ -184,7 +183,7 @@ Values nodes(std::size_t links, const std::function<double(double)>& place) {
   return s;
 }
 
-// Validation 6.2: not the fourth order of a cubic.
+// Not the fourth order of a cubic.
 TEST(AkimaSpline, is_of_third_order_on_smooth_meshes) {
   const auto even = [](double u) { return two_turns * u; };
   const double coarse = distance_to_helix(nodes(40, even)),
@@ -211,7 +210,7 @@ TEST(AkimaSpline, loses_an_order_on_jittered_meshes) {
   EXPECT_NEAR(order, 1.9, 0.2);
 }
 
-// Validation 6.5: equal arcs of the spline have unequal chords.
+// Equal arcs of the spline have unequal chords.
 TEST(AkimaSpline, equal_arcs_have_equal_chords_to_second_order) {
   for (const auto& [links, uneven, longer] : {std::tuple{40U, 8.78e-2, 4.3e-3},
                                               {80U, 3.41e-2, 1.04e-3},
@@ -242,7 +241,7 @@ TEST(AkimaSpline, equal_arcs_have_equal_chords_to_second_order) {
   }
 }
 
-// Validation 6.4: what makes radii by spline dangerous.
+// What makes radii by spline dangerous.
 TEST(AkimaSpline, can_dip_below_positive_data) {
   const Values a{5e-3, 2.5e-3, 1e-4, 1e-4, 2e-4, 1e-4, 1e-4};
   EXPECT_NEAR(spline(uniform(7), a, {2.3464})[0], -8.481502e-5, 1e-11);

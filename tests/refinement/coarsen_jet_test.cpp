@@ -26,7 +26,7 @@ JetState uneven_jet(std::size_t links) {
 
 RefinementRule joining(double coarsen, double length = 1e9) {
   RefinementRule rule;
-  rule.mesh.length = length, rule.coarsen = coarsen;
+  rule.length = length, rule.coarsen = coarsen;
   return rule;
 }
 
@@ -134,7 +134,7 @@ TEST(Coarsening, leaves_a_jet_alone_without_short_links) {
   }
 }
 
-TEST(Coarsening, is_never_asked_for_without_a_length) {
+TEST(Coarsening, without_a_length_is_a_contract_violation) {
   JetState jet = straight_jet(5, 1);
   EXPECT_THROW((void)coarsen_jet(jet, RefinementRule{}), ContractViolation);
 }

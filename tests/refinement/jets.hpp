@@ -55,14 +55,14 @@ inline JetState straight_jet(std::size_t links, double length) {
   return straight_jet(std::vector<double>(links, length));
 }
 
-/// Validation 6.3: 40 links 0.02 x 1.15^i.
+/// Forty links 0.02 x 1.15^i.
 inline JetState growing_jet() {
   std::vector<double> links;
   for (std::size_t i = 0; i < 40; ++i) links.push_back(0.02 * std::pow(1.15, i));
   return straight_jet(links);
 }
 
-/// Validation 6.2: two turns of this helix.
+/// Two turns of this helix.
 inline Vec3 on_helix(double s) {
   return {0.3 * s, std::cos(s), std::sin(s)};
 }

@@ -98,10 +98,6 @@ const Wrong wrong_scenes[] = {
      "rtol = 1e-5",
      "method = \"rk45\"",
      {"s.toml:23: integrator.method = \"rk45\"", "\"dormand-prince\" or \"dop853\""}},
-    {"solver_that_nobody_knows",
-     "[coulomb]",
-     "[coulomb]\nsolver = \"guess\"", //
-     {"s.toml:17: coulomb.solver = \"guess\"", "\"direct\""}},
 
     {"missing_key",
      "radius = 5e-5\n",
@@ -225,25 +221,6 @@ const Wrong wrong_scenes[] = {
      "[integrator]",
      "[refinement]\nlength = 3e-3\ninterval = 1e-3\nremap = \"fast\"\n[integrator]",
      {"s.toml:25: ", "refinement.remap = \"fast\"", "\"conservative\" or \"paper\""}},
-    {"spread_of_the_paper_s_remap",
-     "[integrator]",
-     "[refinement]\nlength = 3e-3\ninterval = 1e-3\nremap = \"paper\"\nspread = "
-     "\"linear\"\n[integrator]",
-     {"s.toml:26: ", "refinement.spread", "refinement.remap"}},
-    {"strength_without_a_weight",
-     "[integrator]",
-     "[refinement]\nlength = 3e-3\ninterval = 1e-3\nweight_strength = 2\n[integrator]",
-     {"s.toml:25: ", "refinement.weight_strength = 2", "refinement.weight"}},
-    {"shortest_link_longer_than_the_mean",
-     "[integrator]",
-     "[refinement]\nlength = 3e-3\ninterval = 1e-3\nweight = \"radius\"\nshortest = "
-     "4e-3\n[integrator]",
-     {"s.toml:26: ", "refinement.shortest = 0.004 m", "refinement.length = 0.003 m"}},
-    {"longest_link_shorter_than_the_mean",
-     "[integrator]",
-     "[refinement]\nlength = 3e-3\ninterval = 1e-3\nweight = \"radius\"\nlongest = "
-     "2e-3\n[integrator]",
-     {"s.toml:26: ", "refinement.longest = 0.002 m"}},
     {"coarsening_what_was_just_cut",
      "[integrator]",
      "[refinement]\nlength = 3e-3\ninterval = 1e-3\ncoarsen = 2e-3\n[integrator]",

@@ -67,7 +67,7 @@ TEST(AutoMethod, carries_jets_that_no_explicit_method_could) {
   }
 }
 
-TEST(AutoMethod, nobody_who_looks_changes_the_jet) {
+TEST(AutoMethod, observers_do_not_change_a_stiff_jet) {
   const Scene scene = jet_of(1e9, 2, "auto", 1e-4);
   auto watched = build_simulation(scene);
   int looks = 0;

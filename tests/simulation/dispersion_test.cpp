@@ -12,35 +12,6 @@ namespace {
 
 using namespace test;
 
-TEST(Dispersion, the_static_force_on_a_bent_chain_is_the_lattice_sum) {
-  constexpr std::size_t half = 100;
-  const double l = pvp::link_length, eps = 1e-6 * l;
-  for (const double w : wavelengths) {
-    Scene scene = chain_scene();
-    for (std::size_t k = 0; k <= 2 * half; ++k) {
-      const double j = static_cast<double>(k) - static_cast<double>(half);
-      add_bead(scene, pvp_bead({j * l, eps * std::cos(kappa_of(w) * j), 0}));
-    }
-    scene.config.coulomb = CoulombConfig{};
-    const auto dynamics = build_dynamics(scene);
-    JetState jet = initial_jet(scene);
-    dynamics->bind(jet);
-    std::vector<double> rate(jet.y.size());
-    dynamics->evaluate(0, jet.y, rate);
-    const double force = pvp::mass * rate[4 * jet.beads() + half];
-    const double exact = 2 * constants::coulomb * pvp::charge * pvp::charge / (l * l * l)
-                         * eps * coulomb_sum(kappa_of(w), static_cast<int>(half));
-    EXPECT_NEAR(force / exact, 1, 1e-9) << w;
-  }
-}
-
-TEST(Dispersion, growth_rates_are_the_published_ones) {
-  const std::array<double, 5> published{43508.9019, 34419.6766, 18724.4796, 10887.5181,
-                                        5051.28253};
-  for (std::size_t i = 0; i < published.size(); ++i)
-    EXPECT_NEAR(growth_rate(wavelengths[i]) / published[i], 1, 1e-8) << wavelengths[i];
-}
-
 // Amplitudes that an independent program found for this very chain, at Gamma t = 2 and 4.
 struct Published {
   double gamma_t;

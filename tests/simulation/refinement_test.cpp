@@ -75,7 +75,7 @@ TEST(RefinedJet, keeps_mass_charge_and_volume) {
   }
 }
 
-// Beads land, are clamped and leave while the mesh changes: nobody is lost or stays behind.
+// Beads land, are put on the plane and leave while the mesh changes; none is lost or stays behind.
 TEST(RefinedJet, deposits_beads_on_the_collector_in_the_order_in_which_they_land) {
   RefinedRun run(refined_case(0.4 * cm));
   run.simulation->run_until(14e-3);
@@ -237,8 +237,8 @@ struct DepositDifference {
   }
 };
 
-// While landings are rare each one ends a step; when they are not, steps go on through them, and
-// nobody can tell: a bead lands where, when and as it would, to what the tolerance allows.
+// While landings are rare, each one ends a step. When they are frequent, steps go on through them, and
+// the place, time and state of each landing are the same within the tolerance.
 TEST(FrequentLandings, do_not_end_steps_and_are_as_exact) {
   const auto finish = [](LandingSteps landings, double rtol) {
     Scene scene = refined_case(0.41 * cm, 1e-3, rtol); // no tie of a ceil among the three

@@ -78,15 +78,5 @@ TEST(SingleBead, with_euler_lags_by_half_a_step) {
   }
 }
 
-// The charge density printed in the paper's table gives no jet at all.
-TEST(SingleBead, with_the_printed_charge_density_would_barely_move) {
-  Scene scene = thrown_bead(false);
-  scene.chain.charge[1] = 2.8e-7 / 1e-3 * pvp::volume; // C/L
-  scene.chain.mass[1] = 840 * pvp::volume;
-  const auto simulation = run(scene, 1e-3);
-  const double gained = simulation->jet().columns().velocity()[1].x() - pvp::velocity;
-  EXPECT_NEAR(gained / 1e-3, 1.875 * cm, 5e-4 * cm);
-}
-
 } // namespace
 } // namespace ehdjet

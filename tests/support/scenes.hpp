@@ -19,7 +19,7 @@
 /// Scenes composed in memory, and ways to watch them run.
 namespace ehdjet::test {
 
-/// The PVP fluid at the nozzle (model 7), as in the reference tables.
+/// The PVP fluid at the nozzle as in scenes/pvp.toml, in the units of the published tables.
 namespace pvp {
 inline constexpr double density = 0.839253525 * gram / cm3;
 inline constexpr double charge_density = 44000 * statC / cm3;
@@ -47,7 +47,7 @@ inline void integrate_with_fixed_steps(Scene& scene, const std::string& method,
   scene.config.integrator.step = step;
 }
 
-/// Case I: the PVP jet from a rotating nozzle to the collector, without refinement (model 7).
+/// Case I: the PVP jet from a rotating nozzle to the collector, without refinement.
 inline Scene case_one(const std::string& method = "dormand-prince",
                       double rtol_or_step = 1e-6) {
   Scene s;

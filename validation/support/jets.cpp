@@ -14,13 +14,8 @@ Scene scene(const std::string& name, const std::vector<std::string>& overrides) 
   return s;
 }
 
-const std::vector<Table2Row>& table2() {
-  static const std::vector<Table2Row> rows{
-      {"none", "table2_none", 0, 150, 8787, 149.58},
-      {"0.8 cm", "table2_08", 0.008, 267, 12718, 267},
-      {"0.4 cm", "table2_04", 0.004, 509, 24726, 485},
-      {"0.2 cm", "table2_02", 0.002, 1123, 75793, 950}};
-  return rows;
+std::string name_of(const Table2Row& row) {
+  return row.length == 0 ? row.name : std::string(row.name) + " cm";
 }
 
 double path_length(ConstVec3View r) {

@@ -3,28 +3,21 @@
 #include "ehdjet/scene/read_scene.hpp"
 #include "ehdjet/simulation/build.hpp"
 #include "ehdjet/simulation/simulation.hpp"
+#include "ehdjet/studies/table2.hpp"
 
 #include <cstddef>
 #include <functional>
 #include <string>
 #include <vector>
 
-/// The PVP jets of the paper as scenes, and what is looked at in them.
+/// The PVP jets of the paper as scenes, and the quantities that are compared.
 namespace ehdjet::validation {
 
 /// scenes/<name>.toml with overrides "table.key=value"; nothing is recorded unless asked for.
 Scene scene(const std::string& name, const std::vector<std::string>& overrides = {});
 
-/// A row of the paper's Table 2: case I, or refined at L~, with the paper's remap.
-struct Table2Row {
-  const char *name, *scene;
-  double length; ///< L~ [m]; 0: none
-  double beads;  ///< the paper's
-  double wall;   ///< the paper's, on 24 cores [s]
-  double
-      converged; ///< beads right before a refinement, stationary (model 7); none: the mean
-};
-const std::vector<Table2Row>& table2();
+/// "none" or "0.8 cm": L~ of a row of the paper's Table 2.
+std::string name_of(const Table2Row& row);
 
 /// The jet as a whole at one instant.
 struct Sample {
@@ -39,9 +32,9 @@ double path_length(ConstVec3View r); // [m]
 /// Means over the samples from `from` to `to`.
 Sample mean(const std::vector<Sample>& samples, double from, double to);
 
-/// Of any bead from the same bead of another jet [m]. With different numbers of beads: not a
-/// number, or in a jet that is not refined, where a bead keeps its place from the leading end,
-/// of those that both have.
+/// Largest distance of a bead from the same bead of another jet [m]. With different numbers of beads
+/// it is not a number, unless beads are counted from the leading end: then it is over the beads that
+/// both jets have. In a jet that is not refined a bead keeps its place from that end.
 double largest_distance(const JetState& a, const JetState& b, bool from_the_end = false);
 
 /// |a/b - 1|; 0 if both are the same number.

@@ -9,17 +9,16 @@
 /// Jets of any number of beads, long rather than dense.
 namespace ehdjet::validation {
 
-/// A whipping jet as it would be with its collector far away: a refined jet as computed, whose
-/// last turns are repeated downstream by a screw motion along the axis. The turns are closed up
-/// first: what is left of one period in radius and velocity is taken back evenly along it, so
-/// that the coil goes on as wide as it is. Links are as long as in the computed jet, hundreds
-/// of radii.
+/// A bending jet with a distant collector. It is a computed refined jet whose last turns are repeated
+/// downstream by a screw motion along the axis. First the turns are made periodic: the change of
+/// radius and velocity over one period is subtracted evenly along it, so that the coil keeps its
+/// width. Links are as long as in the computed jet, hundreds of radii.
 class LongJet {
 public:
   /// The jet of Table 2 at 0.2 cm at that time [s].
   explicit LongJet(double time);
 
-  /// A chain held at the nozzle in the jet's field; nothing is born, lands or is cut.
+  /// A chain held at the nozzle in the jet's field; no bead is inserted or lands, and no link is cut.
   [[nodiscard]] Scene scene(std::size_t beads) const;
 
 private:

@@ -58,7 +58,7 @@ private:
   std::size_t columns_;
 };
 
-/// One program's run: what was asked for, and where its answers go.
+/// One run of a program: its options, and where its results go.
 class Suite {
 public:
   struct Options {
@@ -82,11 +82,11 @@ public:
   /// `columns`: names separated by commas, each ending in its unit.
   Csv csv(std::string_view file, std::string_view columns) const;
 
-  /// What decides pass or fail goes into checks.csv.
+  /// Checks decide whether the program passes; they are written to checks.csv.
   void check_at_most(const std::string& what, double value, double bound);
   void check_at_least(const std::string& what, double value, double bound);
 
-  /// The cost of all that is to come, in any unit, and parts of it that are done.
+  /// The cost of everything, in any unit, and the parts of it that are done.
   void plan(double cost);
   void done(double cost, const std::string& what);
 

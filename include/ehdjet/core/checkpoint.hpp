@@ -13,11 +13,11 @@
 
 namespace ehdjet {
 
-/// All that a run needs to go on later with the same bits: named lists of numbers. Counts and
-/// flags are numbers too, exact up to 2^53; what may be absent is a list of one number or none.
+/// Named lists of numbers with which a run can be continued with the same bits. Counts and flags
+/// are stored as numbers, exact up to 2^53; an optional value is a list of one number or none.
 using Checkpoint = std::map<std::string, std::vector<double>>;
 
-/// Carries the state of objects into a checkpoint or out of one. An object names its members once,
+/// Moves the state of objects into a checkpoint or out of one. An object names its members once,
 /// for both directions:
 ///
 ///     void Thing::archive(const Archive& a) { a("count", count_), a("sum", sum_); }
@@ -34,7 +34,7 @@ public:
     return {to_, from_, prefix_ + std::string(name) + '.'};
   }
 
-  /// `value`: a number, count, flag, sum, list of numbers or any of these but lists as optional.
+  /// `value`: a number, count, flag or sum, an optional one of these, or a list of numbers.
   template <class T>
   void operator()(std::string_view name, T& value) const {
     const std::string path = prefix_ + std::string(name);

@@ -27,7 +27,7 @@ struct Vec3Columns {
   }
   operator Vec3Columns<const T>() const {
     return {x, y, z};
-  } // a view may lose the right to write
+  } // a writable view is also a read-only one
 };
 
 using Vec3View = Vec3Columns<double>;

@@ -4,8 +4,8 @@
 
 namespace ehdjet {
 
-/// A sum whose round-off does not grow with the number of terms: time over millions of steps,
-/// mass over thousands of beads.
+/// A sum whose round-off does not grow with the number of terms, such as the time after millions
+/// of steps or the mass of thousands of beads.
 /// source : A. Neumaier, Z. Angew. Math. Mech. 54 (1974) 39
 class CompensatedSum {
 public:

@@ -1,7 +1,7 @@
 #pragma once
 
-/// Physical constants and unit factors. SI inside, always; Gaussian units appear only in
-/// tests and in conversions of published tables.
+/// Physical constants and unit factors. All quantities are in SI units; Gaussian units appear only
+/// in tests and in conversions of published tables.
 namespace ehdjet::constants {
 
 /// Coulomb constant 1/(4 pi eps0) = c^2 1e-7 [N m^2/C^2]. This value, rather than the

@@ -47,6 +47,6 @@ public:
 
 } // namespace ehdjet
 
-/// Preconditions of public functions, checked in every build: none stands in a loop over beads.
+/// Preconditions of public functions. Every build checks them; none is inside a loop over beads.
 #define EHDJET_EXPECTS(ok)                                                                 \
   ((ok) ? void(0) : ::ehdjet::contract_failed("precondition", #ok, __FILE__, __LINE__))

@@ -17,7 +17,8 @@ public:
   void advance() { ++count_; }
   /// Leaves out what lies before `time`.
   void skip_to(double time) {
-    const double below = std::floor(time / interval_) - 1; // whatever the round-off
+    const double below =
+        std::floor(time / interval_) - 1; // less by one, because of round-off
     if (below > static_cast<double>(count_)) count_ = static_cast<std::uint64_t>(below);
     while (next() < time) advance();
   }

@@ -56,7 +56,7 @@ public:
   [[nodiscard]] const Constraints& constraints() const { return chain_.constraints(); }
   /// Pairs of beads at zero distance that were skipped so far, all evaluations together.
   [[nodiscard]] std::uint64_t coincident_pairs() const;
-  /// Comparisons of a force with an exact method; none if nobody compares.
+  /// Comparisons of a force with an exact method; none if there are no comparisons.
   [[nodiscard]] std::optional<TermReport::Checks> checks() const;
 
   /// What is not bound with the chain.

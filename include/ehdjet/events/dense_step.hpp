@@ -8,8 +8,8 @@
 
 namespace ehdjet {
 
-/// A step that was taken but not yet committed, readable at any instant t0 + theta h. What dense
-/// output costs is paid only if somebody looks inside the step.
+/// A step that was taken but not yet committed, readable at any instant t0 + theta h. Dense
+/// output is only prepared if a state inside the step is read.
 class DenseStep {
 public:
   DenseStep(double start, double length, const JetState& chain, Integrator& integrator,

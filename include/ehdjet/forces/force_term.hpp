@@ -19,7 +19,7 @@ namespace ehdjet {
 struct TermReport {
   std::string method;                 ///< how the force is computed, for people to read
   std::uint64_t coincident_pairs = 0; ///< pairs of beads at zero distance that were skipped
-  /// Comparisons with an exact method; none if nobody compares.
+  /// Comparisons with an exact method; none if there are no comparisons.
   struct Checks {
     double last_error = 0;        ///< relative
     std::uint64_t violations = 0; ///< comparisons that found more than the tolerance

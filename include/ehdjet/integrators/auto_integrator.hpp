@@ -7,14 +7,14 @@
 
 namespace ehdjet {
 
-/// Dormand & Prince's explicit pair while accuracy limits the step, ROS34PW2 while stability would.
+/// Dormand & Prince's explicit pair while accuracy limits the step; ROS34PW2 while stability would.
 ///
-/// The explicit method is left when it steps more than 0.7 of its stability limit, the implicit one
-/// when it steps less than a quarter of it, several looks in a row: the more the oftener leaving the
-/// implicit one was soon regretted. The limit is that of the fastest
-/// modes of the system's stiff part. A look costs one linearization; there is one every eight
-/// steps, and after a rejection. Nothing else differs from the explicit method alone: as long as it
-/// is not left, every bit is the same.
+/// The step is compared with the stability limit of the fastest modes of the system's stiff part,
+/// every eighth step and after a rejection; a comparison costs one linearization. The explicit
+/// method is left when its steps are longer than 0.7 of the limit in several comparisons in a row,
+/// the implicit one when its steps are shorter than a quarter of it. The latter takes more
+/// comparisons in a row each time the implicit method is needed again soon afterwards. As long as
+/// the explicit method is not left, every bit is the same as with that method alone.
 class AutoIntegrator final : public Integrator {
 public:
   explicit AutoIntegrator(const ErrorScale& scale);
@@ -58,7 +58,7 @@ private:
   bool rejected_ = false;
   double accepted_ = 0; // length of the last accepted step [s]
   int steps_to_look_, in_a_row_ = 0;
-  int patience_;               ///< looks in a row until the implicit method is left
+  int patience_;               ///< comparisons in a row until the implicit method is left
   int steps_ = 0;              ///< since the last change of method
   bool left_implicit_ = false; ///< by that change
 };

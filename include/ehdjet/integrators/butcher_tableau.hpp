@@ -35,7 +35,8 @@ struct ButcherTableau {
 
 /// All methods, in the order in which they are documented.
 std::span<const ButcherTableau> butcher_tableaus();
-/// The method of that name; InputError listing the known ones if there is none.
+/// The method of that name.
+/// errors : InputError that lists the known names, for a name that is not among them
 const ButcherTableau& butcher_tableau(std::string_view name);
 
 } // namespace ehdjet

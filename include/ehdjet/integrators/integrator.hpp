@@ -10,23 +10,23 @@
 
 namespace ehdjet {
 
-/// What one attempted step has come to. A step that is too inaccurate is an outcome, not an error.
+/// The result of one attempted step. A step that is too inaccurate is a result, not an error.
 struct StepOutcome {
   /// Estimated error over the allowed one; 0 for a method without estimate. Accept if <= 1,
   /// which a NaN is not.
   double error = 0;
 };
 
-/// Advances a flat vector one step at a time; knows nothing of jets.
+/// Advances a flat vector one step at a time. It does not depend on what the vector describes.
 ///
-/// A step is attempted, may be read at any instant inside (dense output), and is then either
-/// committed or attempted again from the same state with another h.
+/// A step is attempted. Its states at any instant inside can then be read (dense output), until it
+/// is committed, or attempted again from the same state with another h.
 class Integrator {
 public:
   virtual ~Integrator() = default;
 
   [[nodiscard]] virtual std::string_view name() const = 0;
-  /// Of the last attempt, where the integrator chooses among methods; else its name.
+  /// The method of the last attempt, if the integrator chooses among methods; otherwise its name.
   [[nodiscard]] virtual std::string_view method_in_use() const { return name(); }
   [[nodiscard]] virtual int order() const = 0;
   /// The last attempt's error estimate falls with h to this power; 0 if there is none.
@@ -41,7 +41,7 @@ public:
   /// Component where the last attempt's error was largest or not a number.
   [[nodiscard]] virtual std::size_t worst_component() const = 0;
 
-  /// Must be called once before `dense_output` of an attempt: evaluates what that still needs.
+  /// Must be called once before `dense_output` of an attempt; evaluates the stages still missing.
   virtual void prepare_dense_output(OdeSystem& system) = 0;
   /// Components [first, first + out.size()) at t + theta h, 0 <= theta <= 1.
   virtual void dense_output(double theta, std::size_t first,
@@ -49,7 +49,7 @@ public:
 
   /// Makes the end of the last attempt the state: swaps it into `y`.
   virtual void commit(std::vector<double>& y) = 0;
-  /// Forget what is known about f(t, y). Call after anything but `commit` has changed y.
+  /// Forgets what is known about f(t, y). To be called after anything but `commit` has changed y.
   virtual void restart() = 0;
   /// What the next steps depend on after a restart.
   virtual void archive(const Archive& /*a*/) {}

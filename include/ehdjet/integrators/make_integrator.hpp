@@ -20,12 +20,12 @@ struct IntegratorDescription {
   std::string_view name;        ///< as in a scene
   std::string_view description; ///< one line, with its source
   MethodKind kind;
-  bool estimates_errors; ///< or needs fixed steps
+  bool estimates_errors; ///< if not, it needs fixed steps
 };
 
-/// Every method there is, in the order in which they are documented.
+/// All methods, in the order in which they are documented.
 [[nodiscard]] std::span<const IntegratorDescription> integration_methods();
-/// errors : InputError listing the known ones for a name that is none of them
+/// errors : InputError that lists the known names, for a name that is not among them
 [[nodiscard]] const IntegratorDescription& integration_method(std::string_view name);
 std::unique_ptr<Integrator> make_integrator(std::string_view name, const ErrorScale& scale);
 

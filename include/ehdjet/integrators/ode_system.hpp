@@ -6,8 +6,8 @@
 
 namespace ehdjet {
 
-/// J, the part of df/dy that makes a system stiff, as it is at one state. What J leaves out costs a
-/// W-method stability, never order: it may hold what is local and cheap and nothing else.
+/// J, the part of df/dy that makes a system stiff, at one state. A term that J leaves out costs a
+/// W-method stability but never order, so that J may contain only what is local and cheap.
 class StiffPart {
 public:
   virtual ~StiffPart() = default;
@@ -20,8 +20,8 @@ public:
   /// out += factor J dp/dt, where p are the components that the system prescribes: how f
   /// changes because they move.
   virtual void add_time_derivative(double factor, std::span<double> out) const = 0;
-  /// Fastest mode of J of each kind (relaxation, elasticity, tension), about: Re <= 0, Im >= 0;
-  /// 0 if there is none [1/s].
+  /// Estimates of the fastest mode of J of each kind (relaxation, elasticity, tension), with
+  /// Re <= 0 and Im >= 0; 0 if there is none [1/s].
   using Modes = std::array<std::complex<double>, 3>;
   [[nodiscard]] virtual Modes fastest_modes() const = 0;
 };
@@ -35,7 +35,7 @@ public:
   /// for each state that it makes, before it evaluates f there.
   virtual void prescribe(double /*t*/, std::span<double> /*y*/) const {}
   virtual void evaluate(double t, std::span<const double> y, std::span<double> rate) = 0;
-  /// For implicit methods; null if the system has none to offer.
+  /// For implicit methods; null if the system has no such part.
   [[nodiscard]] virtual StiffPart* stiff_part() { return nullptr; }
 };
 

@@ -11,9 +11,9 @@ namespace ehdjet {
 ///
 /// laws   : linear data are reproduced on any mesh, quadratic ones on uniform meshes only; local:
 ///          a value acts on three intervals to either side
-/// GSL, which does the work, wants five knots. Fewer (at least two) are continued by Akima's own
-/// rule for the ends, slopes that change linearly: three knots give the parabola through uniform
-/// knots, two the straight line.
+/// GSL, which computes the spline, needs five knots. Fewer knots (at least two) are continued by
+/// Akima's own rule for the ends, with slopes that change linearly. Three uniform knots then give the
+/// parabola, and two the straight line.
 /// source : H. Akima, J. ACM 17 (1970) 589
 class AkimaSpline {
 public:

@@ -9,7 +9,7 @@
 namespace ehdjet {
 
 /// The jet as a string: its beads as knots of a curve, with the arc length from bead 0 by chords.
-/// An embryo, which is prescribed, is no knot (model 4.1).
+/// An embryo is not a knot, because its place is prescribed (model 4.1).
 ///
 /// shapes : arc_length (knots), arc_length[0] = 0                               [m]
 struct JetString {

@@ -22,9 +22,8 @@ enum class ColumnRemap {
 };
 
 struct RefinementRule {
-  MeshRule mesh;
+  double length = 0; ///< L~: links longer than this are cut [m]
   LinkRemap remap = LinkRemap::conservative;
-  Spread spread = Spread::linear;
   ColumnRemap velocity = ColumnRemap::spline;
   ColumnRemap stress = ColumnRemap::spline;
   /// Neighbouring links that are together no longer than this become one; absent: never [m].

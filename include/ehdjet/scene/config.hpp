@@ -13,7 +13,7 @@
 ///
 /// Units, ranges, defaults and meaning of every member stand in one place, the schema
 /// (scene/schema.hpp), which also reads, prints and documents them. Symbols are those of the
-/// model (README, "The model").
+/// model (src/MODEL.md, cited as "model N").
 namespace ehdjet {
 
 /// Ways a bead chain can be held at its ends (chain scenes only).
@@ -111,14 +111,9 @@ struct RefinementConfig {
   double length = 0;   ///< L~ [m]
   double interval = 0; ///< t_ref [s]
   LinkRemap remap = LinkRemap::conservative;
-  std::optional<Spread> spread = {}; ///< conservative remap only; linear
   ColumnRemap velocity = ColumnRemap::spline;
   ColumnRemap stress = ColumnRemap::spline;
-  MeshWeight weight = MeshWeight::uniform;
-  std::optional<double> weight_strength = {};        ///< weighted meshes only; 1 [-]
-  std::optional<double> shortest = {}, longest = {}; ///< links of a weighted mesh [m]
   std::optional<double> coarsen = {}; ///< join links together shorter than this [m]
-  std::optional<std::size_t> max_beads = {};
   bool operator==(const RefinementConfig&) const = default;
 };
 

@@ -78,13 +78,6 @@ inline constexpr Choices<ErrorNorm, 2> error_norms{
 
 inline constexpr Choices<LinkRemap, 2> refinement_remaps{
     {{"conservative", LinkRemap::conservative}, {"paper", LinkRemap::paper}}};
-inline constexpr Choices<MeshWeight, 4> refinement_weights{
-    {{"uniform", MeshWeight::uniform},
-     {"curvature", MeshWeight::curvature},
-     {"radius", MeshWeight::radius},
-     {"stress", MeshWeight::stress}}};
-inline constexpr Choices<Spread, 2> refinement_spreads{
-    {{"linear", Spread::linear}, {"monotone-cubic", Spread::monotone_cubic}}};
 inline constexpr Choices<ColumnRemap, 2> column_remaps{
     {{"spline", ColumnRemap::spline}, {"conservative", ColumnRemap::conservative}}};
 inline constexpr Choices<RefinementRecords, 3> refinement_records{
@@ -145,7 +138,8 @@ void describe(V& v, NozzleConfig& c) {
              "angle of the nozzle at t = 0, from +y towards +z");
   v.optional(
       "insertion_velocity", c.insertion_velocity, insertion_velocities,
-      "velocity of a released bead: half-way to the bead below it, or that of the nozzle");
+      "velocity of a released bead: half-way to that of the bead downstream, or that of "
+      "the nozzle");
 }
 
 template <class V>
@@ -194,26 +188,26 @@ void describe(V& v, CoulombConfig& c) {
              "follows from the tolerance");
   v.optional("opening", c.opening, positive("-", 0.99),
              "largest radius over distance at which a cluster acts as one, for studies",
-             "0.75, and what the tolerance allows");
+             "0.75, or less if the tolerance needs it");
   v.optional("leaf", c.leaf, between("-", 8, 4096),
              "beads per leaf of the cluster tree, a multiple of 8, for studies",
              "follows from the tolerance");
   v.optional("check_every", c.check_every, between("-", 1, 1e12),
              "evaluations between comparisons with the direct sum on sampled beads",
-             "there are none");
+             "there are no comparisons");
   v.optional(
       "calibration", c.calibration, AnyText{},
-      "costs that \"auto\" goes by, a file written by `ehdjet calibrate`; relative to the "
-      "scene file",
+      "file of costs by which \"auto\" chooses, written by `ehdjet calibrate`; relative to "
+      "the scene file",
       "those that come with the program");
 }
 
 template <class V>
 void describe(V& v, ViscoelasticityConfig& c) {
   v.required("elastic_modulus", c.elastic_modulus, non_negative("Pa", 1e12),
-             "elastic modulus, G; 0: no stress at all");
+             "elastic modulus, G; with 0 there is no stress");
   v.required("viscosity", c.viscosity, non_negative("Pa s", 1e6),
-             "viscosity, mu; 0: no stress at all");
+             "viscosity, mu; with 0 there is no stress");
 }
 
 template <class V>
@@ -228,46 +222,30 @@ void describe(V& v, SurfaceTensionConfig& c) {
 template <class V>
 void describe(V& v, VaricosityConfig& c) {
   v.required("every", c.every, between("-", 1, 1e9),
-             "every so-manieth inserted bead is one");
+             "k: every k-th inserted bead differs from the others");
   v.required("factor", c.factor, positive("-", 1e3),
-             "multiplies what it has of the following");
-  v.optional("mass", c.mass, YesNo{}, "its mass");
-  v.optional("volume", c.volume, YesNo{}, "its volume: without, it is denser");
-  v.optional("charge", c.charge, YesNo{}, "its charge");
+             "factor f for the quantities that are true below");
+  v.optional("mass", c.mass, YesNo{}, "the mass of such a bead is multiplied");
+  v.optional("volume", c.volume, YesNo{}, "so is its volume; if false, the bead is denser");
+  v.optional("charge", c.charge, YesNo{}, "so is its charge");
 }
 
 template <class V>
 void describe(V& v, RefinementConfig& c) {
-  v.required("length", c.length, positive("m", 1),
-             "links longer than this are cut, L~; the mean link of a weighted mesh");
+  v.required("length", c.length, positive("m", 1), "links longer than this are cut, L~");
   v.required("interval", c.interval, positive("s", longest_time),
-             "time between refinements, t_ref: they happen at its multiples");
-  v.optional("remap", c.remap, refinement_remaps,
-             "volume, mass and charge: shared out along the arc length, every sum and bump "
-             "kept; or the paper's, from a spline of the radius");
-  v.optional("spread", c.spread, refinement_spreads,
-             "conservative remap: what a link carries is spread evenly, or smoothly and "
-             "monotonically along the jet",
-             "linear");
+             "time between refinements, which happen at its multiples, t_ref");
+  v.optional(
+      "remap", c.remap, refinement_remaps,
+      "how volume, mass and charge reach the new links: by overlap along the arc length, "
+      "which keeps every sum and bump, or as in the paper, from a spline of the radius");
   v.optional("velocity", c.velocity, column_remaps,
              "Akima spline, or average that keeps the momentum");
   v.optional("stress", c.stress, column_remaps,
              "Akima spline, or average that keeps the sum of volume times stress");
-  v.optional("weight", c.weight, refinement_weights,
-             "where the mesh is finer than elsewhere: nowhere, or where this is large");
-  v.optional(
-      "weight_strength", c.weight_strength, non_negative("-", 1e6),
-      "1 + weight_strength w/<w> links where there would be one if the weight w were 0",
-      "1, if there is a weight");
-  v.optional("shortest", c.shortest, positive("m", 1), "shortest link of a weighted mesh",
-             "no limit");
-  v.optional("longest", c.longest, positive("m", 1), "longest link of a weighted mesh",
-             "no limit");
   v.optional("coarsen", c.coarsen, positive("m", 1),
              "join neighbouring links that are together no longer than this",
              "links are never joined");
-  v.optional("max_beads", c.max_beads, between("-", 2, 1e9),
-             "refine no further than to this number of beads", "no limit");
 }
 
 template <class V>
@@ -286,7 +264,7 @@ void describe(V& v, IntegratorConfig& c) {
   v.optional("max_step", c.max_step, positive("s", longest_time),
              "longest step (adaptive only)", "no limit");
   v.optional("min_step", c.min_step, positive("s", 1),
-             "the run stops rather than step less");
+             "the run stops if a step would be shorter than this");
   v.optional("position_scale", c.position_scale, positive("m", 1e3),
              "the error of a position x is measured against rtol (position_scale + |x|)",
              "link_length (chain: shortest link)");
@@ -295,13 +273,12 @@ void describe(V& v, IntegratorConfig& c) {
   v.optional("stress_scale", c.stress_scale, positive("Pa", 1e12), "the same for stresses",
              "0.1 elastic_modulus");
   v.optional("norm", c.norm, error_norms, "norm over all components of the scaled error");
-  v.optional(
-      "events", c.events, event_placements,
-      "insertion and landing happen at their root inside a step, or snap to its end");
+  v.optional("events", c.events, event_placements,
+             "insertion and landing happen at their instants inside a step, or at its end");
   v.optional(
       "landings", c.landings, landing_steps,
-      "adaptive steps end at every landing, or only as long as landings are rare; their "
-      "times are located either way");
+      "adaptive steps end at every landing, or only while landings are rare; their times "
+      "are located in both cases");
 }
 
 template <class V>
@@ -314,10 +291,10 @@ void describe(V& v, OutputConfig& c) {
              "record every bead that leaves at the collector");
   v.optional(
       "refinements", c.refinements, refinement_records,
-      "record of each refinement the change of all sums, or also of the energy of all "
-      "pairs of charges, which costs as much as two force evaluations");
+      "record for each refinement the change of all sums, or also that of the Coulomb "
+      "energy, which costs as much as two force evaluations");
   v.optional("budget", c.budget, positive("s", longest_time),
-             "time between rows of energy and momentum and of what does not add up",
+             "time between rows of energy, momentum and their residual",
              "none are written");
   v.optional("resolving_power", c.resolving_power, positive("s", longest_time),
              "time between samples of the resolving power link_length/l along the jet",
@@ -333,7 +310,7 @@ void describe(V& v, OutputConfig& c) {
 
 template <class V>
 void describe(V& v, SceneConfig& c) {
-  v.optional("title", c.title, AnyText{}, "one line on what this scene is");
+  v.optional("title", c.title, AnyText{}, "one line that describes the scene");
   v.table("run", c.run, "What is simulated.");
   v.table(
       "nozzle", c.nozzle,

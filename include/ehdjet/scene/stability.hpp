@@ -8,7 +8,7 @@
 
 namespace ehdjet {
 
-/// One link of a uniform straight chain, which is what the rates below belong to.
+/// One link of a uniform straight chain, to which the rates below belong.
 struct LinkState {
   double length = 0;         ///< l [m]
   double radius = 0;         ///< a [m]

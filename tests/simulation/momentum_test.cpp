@@ -1,64 +1,15 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <string>
-#include <vector>
+#include <optional>
+#include <utility>
 
-#include "support/energy_budget.hpp"
+#include "support/scenes.hpp"
 
 namespace ehdjet {
 namespace {
 
 using namespace test;
-
-// d/dt (stored energy) = - dissipation + power of the paper's surface tension
-TEST(Energy, of_a_chain_is_stored_dissipated_or_the_work_of_surface_tension) {
-  for (const std::string kind : {"free", "held"}) {
-    for (const auto form : {SurfaceTensionForm::paper, SurfaceTensionForm::line}) {
-      GoldenChain golden(kind);
-      golden.scene.config.surface_tension->form = form;
-      BudgetedChain chain(golden.scene);
-      const ChainBudget start = chain.budget_at(0);
-      for (std::size_t i = 1; i < golden.times(); ++i) {
-        const ChainBudget b = chain.budget_at(golden.time(i));
-        const double residual = b.stored() - start.stored() + b.dissipated - b.work;
-        EXPECT_LE(std::abs(residual), 1e-12 * start.coulomb)
-            << kind << " " << golden.time(i);
-        EXPECT_GT(b.dissipated, 0) << kind;
-      }
-    }
-  }
-}
-
-TEST(Energy, has_the_published_parts) {
-  struct Row {
-    std::string kind;
-    double kinetic, coulomb, field, elastic, dissipated, work;
-  };
-  const Row rows[] = {
-      {"free", 3.232986979964, 2.318300608448, -0.1742397315794, 0.3487755145694,
-       0.1086085046340, -0.004041428718567},
-      {"held", 2.976400047240, 2.547721046573, -0.2113627942731, 0.4106961113568,
-       0.1068253076179, -0.008193586239860},
-  };
-  for (const Row& row : rows) {
-    const GoldenChain golden(row.kind);
-    BudgetedChain chain(golden.scene);
-    const ChainBudget b = chain.budget_at(2e-4);
-    const double digits = 2e-12; // of numbers printed with 13
-    EXPECT_NEAR(b.kinetic / erg / row.kinetic, 1, digits) << row.kind;
-    EXPECT_NEAR(b.coulomb / erg / row.coulomb, 1, digits) << row.kind;
-    EXPECT_NEAR(b.field / erg / row.field, 1, digits) << row.kind;
-    EXPECT_NEAR(b.elastic / erg / row.elastic, 1, digits) << row.kind;
-    EXPECT_NEAR(b.dissipated / erg / row.dissipated, 1, 10 * digits) << row.kind;
-    EXPECT_NEAR(b.work / erg / row.work, 1, 100 * digits) << row.kind;
-  }
-  const GoldenChain golden("free");
-  const ChainBudget start = BudgetedChain(golden.scene).budget_at(0);
-  EXPECT_NEAR(start.stored() / erg / 5.838473304754611, 1, 1e-14);
-  EXPECT_NEAR(start.coulomb / erg / 6.009651446934868, 1, 1e-14);
-  EXPECT_NEAR(start.field / erg / -0.1711781421802560, 1, 1e-14);
-}
 
 /// sum m v of a free chain of unlike beads after 2e-4 s, and sum m |v|.
 std::pair<Vec3, double> momentum(std::optional<SurfaceTensionForm> form, bool driven) {
