@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 
 namespace ehdjet::cli {
 
@@ -17,16 +18,24 @@ namespace fs = std::filesystem;
 namespace {
 
 struct Options {
-  std::string run, output;
-  bool observables = false, beads = false, deposit = false, xyz = false, vtk = false;
-  bool refinements = false, budget = false, resolving_power = false;
+  std::string run, output, part;
   std::optional<double> time, from;
   bool force = false;
 };
 
+constexpr std::pair<const char*, const char*> parts[] = {
+    {"observables", "CSV: the observables over time"},
+    {"beads", "CSV: the beads of one frame, the last one by default"},
+    {"deposit", "CSV: the deposited fibre"},
+    {"refinements", "CSV: changes by each mesh refinement"},
+    {"budget", "CSV: energy and momentum over time, and their residual"},
+    {"resolving-power", "CSV: mean and least resolving power link_length/l along the jet"},
+    {"xyz", "Extended XYZ: all frames (OVITO) or, with --time, one (also VMD)"},
+    {"vtk", "ParaView: a .pvd file and a folder of poly-lines, one per frame"}};
+
 void run_export(const Options& options) {
   const RunReader run(options.run);
-  if (options.vtk) {
+  if (options.part == "vtk") {
     const fs::path pvd = options.output.empty()
                              ? fs::path(options.run).replace_extension("pvd")
                              : fs::path(options.output);
@@ -35,13 +44,14 @@ void run_export(const Options& options) {
   }
   TextOutput output =
       options.output.empty() ? TextOutput() : TextOutput(options.output, options.force);
-  if (options.observables) export_observables(run, output);
-  if (options.beads) export_beads(run, options.time, output);
-  if (options.deposit) export_deposit(run, output);
-  if (options.refinements) export_refinements(run, output);
-  if (options.budget) export_budget(run, output);
-  if (options.resolving_power) export_resolving_power(run, options.from, output);
-  if (options.xyz) export_xyz(run, options.time, output);
+  if (options.part == "beads")
+    export_beads(run, options.time, output);
+  else if (options.part == "resolving-power")
+    export_resolving_power(run, options.from, output);
+  else if (options.part == "xyz")
+    export_xyz(run, options.time, output);
+  else
+    export_table(run, options.part, output);
 }
 
 } // namespace
@@ -54,21 +64,9 @@ void add_export_command(CLI::App& app) {
       ->required()
       ->type_name("RUN.h5");
   CLI::Option_group* format = command->add_option_group("Format", "one of");
-  format->add_flag("--observables", options->observables, "CSV: the observables over time");
-  format->add_flag("--beads", options->beads,
-                   "CSV: the beads of one frame, the last one by default");
-  format->add_flag("--deposit", options->deposit, "CSV: the deposited fibre");
-  format->add_flag("--refinements", options->refinements,
-                   "CSV: changes by each mesh refinement");
-  format->add_flag("--budget", options->budget,
-                   "CSV: energy and momentum over time, and their residual");
-  CLI::Option* power =
-      format->add_flag("--resolving-power", options->resolving_power,
-                       "CSV: mean and least resolving power link_length/l along the jet");
-  format->add_flag("--xyz", options->xyz,
-                   "Extended XYZ: all frames (OVITO) or, with --time, one (also VMD)");
-  format->add_flag("--vtk", options->vtk,
-                   "ParaView: a .pvd file and a folder of poly-lines, one per frame");
+  for (const auto& [part, help] : parts)
+    format->add_flag_callback(
+        std::string("--") + part, [options, name = part] { options->part = name; }, help);
   format->require_option(1);
   command->add_option("--time", options->time, "Take the frame nearest to this time [s]")
       ->type_name("T");
@@ -76,7 +74,7 @@ void add_export_command(CLI::App& app) {
       ->add_option("--from", options->from,
                    "Mean over the times from this one on [s]; default: the second half")
       ->type_name("T")
-      ->needs(power);
+      ->needs(format->get_option("--resolving-power"));
   command
       ->add_option(
           "-o,--output", options->output,

@@ -7,7 +7,6 @@
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <filesystem>
 #include <fmt/format.h>
 #include <memory>
@@ -32,26 +31,20 @@ struct Options {
 };
 
 /// Says so when a check of the Coulomb force finds more than the tolerance.
-class Violations final : public Observer {
-public:
-  Violations(double tolerance, std::uint64_t logged)
-      : tolerance_(tolerance)
-      , logged_(logged) {}
-  [[nodiscard]] Interest interest() const override { return {.ends_of_steps = true}; }
-  void after_step(const JetSnapshot& s) override {
-    if (s.statistics.coulomb_violations == logged_) return;
-    logged_ = s.statistics.coulomb_violations;
+void report_violations(Simulation& simulation, double tolerance) {
+  simulation.after_each_step([tolerance,
+                              logged = simulation.statistics().coulomb_violations](
+                                 const Simulation& s) mutable {
+    const RunStatistics& statistics = s.statistics();
+    if (statistics.coulomb_violations == logged) return;
+    logged = statistics.coulomb_violations;
     fmt::print(
         stderr,
         "\nat t = {:.9g} s the Coulomb force was off by {:.2g}, more than the tolerance "
         "{:g}; the solver is stricter from here on\n",
-        s.time, *s.statistics.coulomb_error, tolerance_);
-  }
-
-private:
-  double tolerance_;
-  std::uint64_t logged_;
-};
+        s.jet().time, *statistics.coulomb_error, tolerance);
+  });
+}
 
 std::string summary(const RunResult& result, const Scene& scene,
                     const std::filesystem::path& file) {
@@ -98,14 +91,10 @@ void run(const Options& options) {
           : std::filesystem::path(options.output);
   std::optional<Progress> progress;
   std::optional<InterruptGuard> interrupt;
-  RunOptions run{.overwrite = options.force,
-                 .threads = options.threads,
-                 .continue_from = {},
-                 .scene_file = options.scene,
-                 .provenance = environment(),
-                 .extras = {},
-                 .started = {},
-                 .interrupted = InterruptGuard::signal_name};
+  RunOptions run;
+  run.overwrite = options.force, run.threads = options.threads;
+  run.scene_file = options.scene, run.provenance = environment();
+  run.interrupted = InterruptGuard::signal_name;
   if (!options.continued.empty()) run.continue_from = options.continued;
   run.started = [&](Simulation& simulation) {
     interrupt.emplace();
@@ -115,8 +104,7 @@ void run(const Options& options) {
     fmt::print(stderr, "{}{}simulating {:.6g} s into {}\n", c.title,
                c.title.empty() ? "" : "\n", end - start, path.string());
     if (c.coulomb && c.coulomb->check_every)
-      simulation.add(std::make_unique<Violations>(
-          c.coulomb->tolerance, simulation.statistics().coulomb_violations));
+      report_violations(simulation, c.coulomb->tolerance);
     progress.emplace(start, end);
     simulation.after_each_step([&](const Simulation& s) { progress->show(s); });
   };

@@ -5,7 +5,9 @@
 #include <cctype>
 #include <limits>
 #include <numbers>
+#include <numeric>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "record_columns.hpp"
@@ -50,39 +52,36 @@ RunTable in_order(const RunTable& table, const List& list) {
   return ordered;
 }
 
+std::vector<double> arc_length(const RunTable& deposit) {
+  const auto &volume = deposit["volume"], &radius = deposit["radius"];
+  std::vector<double> lengths(deposit.rows());
+  double end = 0;
+  for (std::size_t k = 0; k < deposit.rows(); ++k)
+    lengths[k] = end += volume[k] / (std::numbers::pi * radius[k] * radius[k]);
+  return lengths;
+}
+
 } // namespace
 
-void export_observables(const RunReader& run, TextOutput& output) {
-  print_csv(in_order(run.table("observables"), observable_columns()), output);
+void export_table(const RunReader& run, const std::string& part, TextOutput& output) {
+  RunTable table = run.table(part);
+  if (part == "observables") table = in_order(table, observable_columns());
+  if (part == "refinements") table = in_order(table, refinement_columns());
+  if (part == "deposit") {
+    table = in_order(table, deposit_columns());
+    table.columns.push_back({"arc_length", "m", arc_length(table)});
+  }
+  print_csv(table, output);
 }
 
 void export_beads(const RunReader& run, std::optional<double> time, TextOutput& output) {
   const Frame frame = run.frame(run.nearest_frame(time));
-  RunTable table{{{"bead", "1", std::vector<double>(frame.rows())}}};
-  for (std::size_t k = 0; k < frame.rows(); ++k)
-    table.columns[0].values[k] = static_cast<double>(k);
+  std::vector<double> numbers(frame.rows());
+  std::iota(numbers.begin(), numbers.end(), 0.0);
+  RunTable table{{{"bead", "1", std::move(numbers)}}};
   for (const BeadColumn& c : bead_columns())
     table.columns.push_back({c.name, c.unit, column_or_zeros(frame, c.name)});
   print_csv(table, output);
-}
-
-void export_deposit(const RunReader& run, TextOutput& output) {
-  RunTable table = in_order(run.table("deposit"), deposit_columns());
-  const auto &volume = table["volume"], &radius = table["radius"];
-  std::vector<double> arc_length(table.rows());
-  double end = 0;
-  for (std::size_t k = 0; k < table.rows(); ++k)
-    arc_length[k] = end += volume[k] / (std::numbers::pi * radius[k] * radius[k]);
-  table.columns.push_back({"arc_length", "m", std::move(arc_length)});
-  print_csv(table, output);
-}
-
-void export_refinements(const RunReader& run, TextOutput& output) {
-  print_csv(in_order(run.table("refinements"), refinement_columns()), output);
-}
-
-void export_budget(const RunReader& run, TextOutput& output) {
-  print_csv(run.table("budget"), output);
 }
 
 void export_resolving_power(const RunReader& run, std::optional<double> from,

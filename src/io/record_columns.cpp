@@ -7,6 +7,7 @@
 #include <limits>
 #include <numbers>
 #include <string>
+#include <utility>
 
 namespace ehdjet {
 namespace {
@@ -67,27 +68,43 @@ auto number_of(std::size_t RefinementRecord::*value) {
   return [value](const RefinementRecord& r) { return static_cast<double>(r.*value); };
 }
 
-auto state(std::size_t column) {
-  return [column](const JetSnapshot& s) {
+/// A column of the vector that is integrated, and the same of a bead at its landing.
+BeadColumn integrated(ColumnInfo info, std::size_t column, const char* deposited,
+                      std::function<double(const Bead&)> landed_value) {
+  const auto values = [column](const JetSnapshot& s) {
     EHDJET_EXPECTS(s.columns.flat.size() > column * s.columns.beads);
     return s.columns.column(column);
   };
+  return {std::move(info), values, deposited, std::move(landed_value)};
 }
 
-auto carried(std::vector<double> JetState::*values) {
-  return
-      [values](const JetSnapshot& s) -> std::span<const double> { return s.jet.*values; };
+auto position(int component) {
+  return [component](const Bead& b) { return b.position[component]; };
+}
+
+auto velocity(int component) {
+  return [component](const Bead& b) { return b.velocity[component]; };
+}
+
+/// A column that a link carries along.
+BeadColumn carried(ColumnInfo info, std::vector<double> JetState::*values,
+                   double Bead::*landed_value) {
+  return {
+      std::move(info),
+      [values](const JetSnapshot& s) -> std::span<const double> { return s.jet.*values; },
+      "of the bead's link", [landed_value](const Bead& b) { return b.*landed_value; }};
 }
 
 /// Of all beads, computed; `fill(snapshot, values)` finds zeros.
 template <class Fill>
-auto computed(Fill fill) {
-  return [fill, values = std::vector<double>()](
-             const JetSnapshot& s) mutable -> std::span<const double> {
+BeadColumn computed(ColumnInfo info, Fill fill) {
+  const auto all = [fill, values = std::vector<double>()](
+                       const JetSnapshot& s) mutable -> std::span<const double> {
     values.assign(s.jet.beads(), 0.0);
     fill(s, values);
     return values;
   };
+  return {std::move(info), all, nullptr, {}};
 }
 
 void fill_radius(const JetSnapshot& s, std::vector<double>& values) {
@@ -98,6 +115,14 @@ void fill_radius(const JetSnapshot& s, std::vector<double>& values) {
   if (jet.has_embryo) values[1] = link_radius(jet.volume[1], (r[1] - r[0]).norm());
   // Bead 0 has no link; it gets the radius of the first one, so that a drawn jet has a start.
   if (jet.first() < jet.beads()) values[0] = values[jet.first()];
+}
+
+void mark_landed(const JetSnapshot& s, std::vector<double>& values) {
+  for (const LandedBead& b : s.jet.landed) values[b.bead] = 1;
+}
+
+void mark_embryo(const JetSnapshot& s, std::vector<double>& values) {
+  if (s.jet.has_embryo) values[1] = 1;
 }
 
 } // namespace
@@ -163,55 +188,23 @@ std::vector<RecordColumn<RefinementRecord>> refinement_columns() {
 }
 
 std::vector<BeadColumn> bead_columns() {
-  return {{{"x", "m", "position along the axis, from the nozzle"},
-           state(0),
-           "position on the collector",
-           [](const Bead& b) { return b.position.x(); }},
-          {{"y", "m", "position across the axis"},
-           state(1),
-           "position on the collector",
-           [](const Bead& b) { return b.position.y(); }},
-          {{"z", "m", "position across the axis"},
-           state(2),
-           "position on the collector",
-           [](const Bead& b) { return b.position.z(); }},
-          {{"vx", "m/s", "velocity"},
-           state(3),
-           "velocity at the landing",
-           [](const Bead& b) { return b.velocity.x(); }},
-          {{"vy", "m/s", "velocity"},
-           state(4),
-           "velocity at the landing",
-           [](const Bead& b) { return b.velocity.y(); }},
-          {{"vz", "m/s", "velocity"},
-           state(5),
-           "velocity at the landing",
-           [](const Bead& b) { return b.velocity.z(); }},
-          {{"stress", "Pa", "of that link"},
-           state(6),
-           "at the landing",
-           [](const Bead& b) { return b.stress; }},
-          {{"radius", "m", "of the link to the bead upstream"}, computed(fill_radius)},
-          {{"volume", "m^3", "of that link"},
-           carried(&JetState::volume),
-           "of the bead's link",
-           [](const Bead& b) { return b.volume; }},
-          {{"mass", "kg", "of that link"},
-           carried(&JetState::mass),
-           "of the bead's link",
-           [](const Bead& b) { return b.mass; }},
-          {{"charge", "C", "of that link"},
-           carried(&JetState::charge),
-           "of the bead's link",
-           [](const Bead& b) { return b.charge; }},
-          {{"landed", "1", "1: the bead rests on the collector", flag},
-           computed([](const JetSnapshot& s, std::vector<double>& values) {
-             for (const LandedBead& b : s.jet.landed) values[b.bead] = 1;
-           })},
-          {{"embryo", "1", "1: the bead is still forming at the nozzle", flag},
-           computed([](const JetSnapshot& s, std::vector<double>& values) {
-             if (s.jet.has_embryo) values[1] = 1;
-           })}};
+  const char *place = "position on the collector", *speed = "velocity at the landing";
+  return {
+      integrated({"x", "m", "position along the axis, from the nozzle"}, 0, place,
+                 position(0)),
+      integrated({"y", "m", "position across the axis"}, 1, place, position(1)),
+      integrated({"z", "m", "position across the axis"}, 2, place, position(2)),
+      integrated({"vx", "m/s", "velocity"}, 3, speed, velocity(0)),
+      integrated({"vy", "m/s", "velocity"}, 4, speed, velocity(1)),
+      integrated({"vz", "m/s", "velocity"}, 5, speed, velocity(2)),
+      integrated({"stress", "Pa", "of that link"}, 6, "at the landing", &Bead::stress),
+      computed({"radius", "m", "of the link to the bead upstream"}, fill_radius),
+      carried({"volume", "m^3", "of that link"}, &JetState::volume, &Bead::volume),
+      carried({"mass", "kg", "of that link"}, &JetState::mass, &Bead::mass),
+      carried({"charge", "C", "of that link"}, &JetState::charge, &Bead::charge),
+      computed({"landed", "1", "1: the bead rests on the collector", flag}, mark_landed),
+      computed({"embryo", "1", "1: the bead is still forming at the nozzle", flag},
+               mark_embryo)};
 }
 
 // Those of the link's own stand where the first files had them: after the radii, volume last.

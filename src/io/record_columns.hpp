@@ -28,7 +28,7 @@ std::vector<RecordColumn<RefinementRecord>> refinement_columns();
 struct BeadColumn : ColumnInfo {
   std::function<std::span<const double>(const JetSnapshot&)> values;
   const char* deposited = nullptr; ///< description in the deposit
-  double (*landed_value)(const Bead&) = nullptr;
+  std::function<double(const Bead&)> landed_value;
 };
 
 /// The columns of /beads, in the order of an export.

@@ -97,40 +97,39 @@ Handle file_access() {
   return {hdf5::FileDriver::access_properties(), H5Pclose};
 }
 
-void write_statistics(hid_t file, const RunStatistics& statistics) {
+void write_statistics(hid_t file, const RunStatistics& s) {
   const Handle group = hdf5::create_group(file, "statistics");
-  hdf5::write_attribute(group, "evaluations", statistics.evaluations);
-  hdf5::write_attribute(group, "steps", statistics.steps);
-  hdf5::write_attribute(group, "rejected", statistics.rejected);
-  hdf5::write_attribute(group, "insertions", statistics.insertions);
-  hdf5::write_attribute(group, "releases", statistics.releases);
-  hdf5::write_attribute(group, "landings", statistics.landings);
-  if (statistics.refinements)
-    hdf5::write_attribute(group, "refinements", *statistics.refinements);
-  if (statistics.method) {
-    hdf5::write_attribute(group, "method", std::string(statistics.method->in_use));
-    hdf5::write_attribute(group, "method_since", statistics.method->since);
-    hdf5::write_attribute(group, "method_changes", statistics.method->changes);
+  const auto write = [&](const char* name, const auto& value) {
+    hdf5::write_attribute(group, name, value);
+  };
+  write("evaluations", s.evaluations), write("steps", s.steps);
+  write("rejected", s.rejected), write("insertions", s.insertions);
+  write("releases", s.releases), write("landings", s.landings);
+  if (s.refinements) write("refinements", *s.refinements);
+  if (s.method) {
+    write("method", std::string(s.method->in_use));
+    write("method_since", s.method->since), write("method_changes", s.method->changes);
   }
-  hdf5::write_attribute(group, "coincident_pairs", statistics.coincident_pairs);
-  hdf5::write_attribute(group, "shortest_step", statistics.shortest_step);
-  hdf5::write_attribute(group, "longest_step", statistics.longest_step);
-  hdf5::write_attribute(group, "wall_time", statistics.wall_time);
+  write("coincident_pairs", s.coincident_pairs), write("wall_time", s.wall_time);
+  write("shortest_step", s.shortest_step), write("longest_step", s.longest_step);
 }
 
 void write_ledger(hid_t file, const Ledger& ledger) {
   const Handle group = hdf5::create_group(file, "ledger");
+  const auto write = [&](const char* name, double value) {
+    hdf5::write_attribute(group, name, value);
+  };
   hdf5::write_attribute(group, "inserted_beads", ledger.inserted_beads);
   hdf5::write_attribute(group, "removed_beads", ledger.removed_beads);
-  hdf5::write_attribute(group, "inserted_mass", ledger.inserted_mass);
-  hdf5::write_attribute(group, "removed_mass", ledger.removed_mass);
-  hdf5::write_attribute(group, "inserted_charge", ledger.inserted_charge);
-  hdf5::write_attribute(group, "removed_charge", ledger.removed_charge);
-  hdf5::write_attribute(group, "inserted_volume", ledger.inserted_volume);
-  hdf5::write_attribute(group, "removed_volume", ledger.removed_volume);
-  hdf5::write_attribute(group, "release_speed", ledger.release_speed);
-  hdf5::write_attribute(group, "impact_speed", ledger.impact_speed);
-  hdf5::write_attribute(group, "collector_radius", ledger.collector_radius);
+  write("inserted_mass", ledger.inserted_mass);
+  write("removed_mass", ledger.removed_mass);
+  write("inserted_charge", ledger.inserted_charge);
+  write("removed_charge", ledger.removed_charge);
+  write("inserted_volume", ledger.inserted_volume);
+  write("removed_volume", ledger.removed_volume);
+  write("release_speed", ledger.release_speed);
+  write("impact_speed", ledger.impact_speed);
+  write("collector_radius", ledger.collector_radius);
 }
 
 Handle group_in(hid_t file, const std::string& name) {

@@ -55,7 +55,7 @@ protected:
 TEST_F(Export, observables_have_the_documented_columns_and_keep_every_bit) {
   const RunReader run(folder_ / "run.h5");
   const auto [header, rows] =
-      csv(folder_, [&](TextOutput& to) { export_observables(run, to); });
+      csv(folder_, [&](TextOutput& to) { export_table(run, "observables", to); });
   EXPECT_EQ(header,
             "time_s,beads,tip_x_m,tip_yz_m,path_length_m,nozzle_speed_m_s,impact_speed_m_s,"
             "collector_radius_m,current_in_a,current_out_a,aperture_deg,evaluations,steps,"
@@ -119,7 +119,7 @@ TEST_F(Export, beads_are_those_of_the_last_frame_unless_a_time_is_given) {
 TEST_F(Export, deposit_has_the_documented_columns_and_keeps_every_bit) {
   const RunReader run(folder_ / "run.h5");
   const auto [header, rows] =
-      csv(folder_, [&](TextOutput& to) { export_deposit(run, to); });
+      csv(folder_, [&](TextOutput& to) { export_table(run, "deposit", to); });
   EXPECT_EQ(header, "time_s,removal_time_s,x_m,y_m,z_m,vx_m_s,vy_m_s,vz_m_s,stress_pa,"
                     "landing_radius_m,radius_m,mass_kg,charge_c,volume_m3,arc_length_m");
   ASSERT_EQ(rows.size(), 9U);
@@ -244,9 +244,9 @@ TEST_F(Export, an_existing_file_is_overwritten_only_on_demand) {
   const RunReader run(folder_ / "run.h5");
   EXPECT_THROW(TextOutput(folder_ / "run.h5", false), InputError);
   TextOutput nowhere(folder_ / "absent/out.csv", false);
-  EXPECT_THROW(export_deposit(run, nowhere), InputError);
+  EXPECT_THROW(export_table(run, "deposit", nowhere), InputError);
   TextOutput full("/dev/full", true);
-  EXPECT_THROW(export_deposit(run, full), RunError);
+  EXPECT_THROW(export_table(run, "deposit", full), RunError);
 }
 
 TEST_F(Export, a_part_that_is_absent_is_named_with_its_remedy_and_nothing_is_written) {
@@ -257,7 +257,7 @@ TEST_F(Export, a_part_that_is_absent_is_named_with_its_remedy_and_nothing_is_wri
   const RunReader run(folder_ / "bare.h5");
   try {
     TextOutput output(folder_ / "out.csv", false);
-    export_deposit(run, output);
+    export_table(run, "deposit", output);
     FAIL() << "exported";
   } catch (const InputError& error) {
     EXPECT_EQ(error.what(),

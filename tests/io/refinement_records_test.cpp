@@ -64,7 +64,7 @@ TEST(RefinementRecords, come_back_as_they_were_written) {
     EXPECT_EQ(t.find("coulomb_energy_change") != nullptr, with_coulomb);
 
     TextOutput output(folder / "out.csv", false);
-    export_refinements(run, output);
+    export_table(run, "refinements", output);
     const std::string text = text_of(folder / "out.csv");
     EXPECT_EQ(text.find("coulomb_energy_change_j") != std::string::npos, with_coulomb);
     const std::string row = text.substr(text.find('\n') + 1);
@@ -123,7 +123,7 @@ TEST(AccountBook, keeps_columns_in_their_order_with_their_units) {
   EXPECT_EQ(units, (std::vector<std::string>{"s", "J", "kg m/s"}));
   EXPECT_EQ(t["work"], (std::vector<double>{0, 1, 2}));
   TextOutput output(folder / "out.csv", false);
-  export_budget(run, output);
+  export_table(run, "budget", output);
   EXPECT_EQ(text_of(folder / "out.csv"),
             "time_s,work_j,impulse_kg_m_s\n0,0,-0\n0.5,1,-0.5\n1,2,-1\n");
 }

@@ -128,6 +128,15 @@ TEST(RunFile, has_only_the_parts_that_were_asked_for) {
   EXPECT_THROW(static_cast<void>(read.table("deposit")), InputError);
 }
 
+TEST(RunFile, nobody_writes_to_one_that_is_finished) {
+  const ScratchFolder folder;
+  const auto file = std::make_shared<RunFile>(folder / "run.h5", false, Provenance{}, 1);
+  const auto shown = record_frames(file, 1, true);
+  file->finish("complete", "", {}, {});
+  EXPECT_THROW(shown->observe(fabricated_jet(1).snapshot()), ContractViolation);
+  EXPECT_THROW(file->finish("complete", "", {}, {}), ContractViolation);
+}
+
 TEST(RunFile, records_the_method_if_it_was_chosen) {
   const ScratchFolder folder;
   const auto records = [&](const std::optional<MethodRecord>& method) {

@@ -5,27 +5,21 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
 
 namespace ehdjet {
 
 // Every number is written with the 17 digits that bring back the same double, in SI units that
 // the header of its column names. InputError if the run has no such part.
 
-/// One row per output time (CSV).
-void export_observables(const RunReader& run, TextOutput& output);
+/// One row per output time, deposited bead, refinement or time of the budget (CSV): the part
+/// "observables", "deposit", "refinements" or "budget". A deposited bead has the arc length of the
+/// fibre up to the end of its link, from the first bead that left the chain; links are as long as
+/// when they left.
+void export_table(const RunReader& run, const std::string& part, TextOutput& output);
 
 /// One row per bead of the frame nearest to `time`, the last one by default (CSV).
 void export_beads(const RunReader& run, std::optional<double> time, TextOutput& output);
-
-/// One row per deposited bead (CSV), with the arc length of the fibre up to the end of its link,
-/// from the first bead that left the chain; links are as long as when they left.
-void export_deposit(const RunReader& run, TextOutput& output);
-
-/// One row per refinement (CSV).
-void export_refinements(const RunReader& run, TextOutput& output);
-
-/// One row per time of the budget of energy and momentum (CSV).
-void export_budget(const RunReader& run, TextOutput& output);
 
 /// Time mean and minimum of the resolving power at each lambda (CSV), over the samples from time
 /// `from` on [s]; by default the later half of the run.
