@@ -67,18 +67,6 @@ auto number_of(std::size_t RefinementRecord::*value) {
   return [value](const RefinementRecord& r) { return static_cast<double>(r.*value); };
 }
 
-auto state(std::size_t column) {
-  return [column](const JetSnapshot& s) {
-    EHDJET_EXPECTS(s.columns.flat.size() > column * s.columns.beads);
-    return s.columns.column(column);
-  };
-}
-
-auto carried(std::vector<double> JetState::*values) {
-  return
-      [values](const JetSnapshot& s) -> std::span<const double> { return s.jet.*values; };
-}
-
 /// Of all beads, computed; `fill(snapshot, values)` finds zeros.
 template <class Fill>
 auto computed(Fill fill) {
@@ -162,78 +150,75 @@ std::vector<RecordColumn<RefinementRecord>> refinement_columns() {
        [](const auto& r) { return r.worst_link; }}};
 }
 
-std::vector<BeadColumn> bead_columns() {
-  return {{{"x", "m", "position along the axis, from the nozzle"},
-           state(0),
-           "position on the collector",
-           [](const Bead& b) { return b.position.x(); }},
-          {{"y", "m", "position across the axis"},
-           state(1),
-           "position on the collector",
-           [](const Bead& b) { return b.position.y(); }},
-          {{"z", "m", "position across the axis"},
-           state(2),
-           "position on the collector",
-           [](const Bead& b) { return b.position.z(); }},
-          {{"vx", "m/s", "velocity"},
-           state(3),
-           "velocity at the landing",
-           [](const Bead& b) { return b.velocity.x(); }},
-          {{"vy", "m/s", "velocity"},
-           state(4),
-           "velocity at the landing",
-           [](const Bead& b) { return b.velocity.y(); }},
-          {{"vz", "m/s", "velocity"},
-           state(5),
-           "velocity at the landing",
-           [](const Bead& b) { return b.velocity.z(); }},
-          {{"stress", "Pa", "of that link"},
-           state(6),
-           "at the landing",
-           [](const Bead& b) { return b.stress; }},
-          {{"radius", "m", "of the link to the bead upstream"}, computed(fill_radius)},
-          {{"volume", "m^3", "of that link"},
-           carried(&JetState::volume),
-           "of the bead's link",
-           [](const Bead& b) { return b.volume; }},
-          {{"mass", "kg", "of that link"},
-           carried(&JetState::mass),
-           "of the bead's link",
-           [](const Bead& b) { return b.mass; }},
-          {{"charge", "C", "of that link"},
-           carried(&JetState::charge),
-           "of the bead's link",
-           [](const Bead& b) { return b.charge; }},
-          {{"landed", "1", "1: the bead rests on the collector", flag},
-           computed([](const JetSnapshot& s, std::vector<double>& values) {
-             for (const LandedBead& b : s.jet.landed) values[b.bead] = 1;
-           })},
-          {{"embryo", "1", "1: the bead is still forming at the nozzle", flag},
-           computed([](const JetSnapshot& s, std::vector<double>& values) {
-             if (s.jet.has_embryo) values[1] = 1;
-           })}};
+std::vector<FrameColumn> frame_columns(const BeadTable& table) {
+  const auto info = [](const BeadColumn& c) {
+    return ColumnInfo{c.name, c.unit, c.description};
+  };
+  std::vector<FrameColumn> columns;
+  for (const BeadColumn& c : table.integrated())
+    columns.push_back({info(c), [place = columns.size()](const JetSnapshot& s) {
+                         return s.columns.column(place);
+                       }});
+  columns.push_back(
+      {{"radius", "m", "of the link to the bead upstream"}, computed(fill_radius)});
+  for (std::size_t c = 0; c < table.carried().size(); ++c)
+    columns.push_back(
+        {info(table.carried()[c]), [c](const JetSnapshot& s) -> std::span<const double> {
+           return s.jet.carried(c);
+         }});
+  columns.push_back({{"landed", "1", "1: the bead rests on the collector", flag},
+                     computed([](const JetSnapshot& s, std::vector<double>& values) {
+                       for (const LandedBead& b : s.jet.landed) values[b.bead] = 1;
+                     })});
+  columns.push_back({{"embryo", "1", "1: the bead is still forming at the nozzle", flag},
+                     computed([](const JetSnapshot& s, std::vector<double>& values) {
+                       if (s.jet.has_embryo) values[1] = 1;
+                     })});
+  return columns;
 }
 
-// Those of the link's own stand where the first files had them: after the radii, volume last.
-std::vector<RecordColumn<DepositedBead>> deposit_columns() {
+std::shared_ptr<const BeadTable> exported_table() {
+  auto table = std::make_shared<BeadTable>();
+  table->declare({.name = "stress", .unit = "Pa", .description = ""});
+  return table;
+}
+
+std::vector<RunTable::Column> further_columns(const Frame& frame) {
+  const auto usual = frame_columns(*exported_table());
+  std::vector<RunTable::Column> further = frame.columns;
+  std::erase_if(further, [&](const RunTable::Column& c) {
+    return std::ranges::find(usual, c.name, &ColumnInfo::name) != usual.end();
+  });
+  return further;
+}
+
+std::vector<RecordColumn<DepositedBead>>
+deposit_columns(std::shared_ptr<const BeadTable> table) {
   std::vector<RecordColumn<DepositedBead>> columns{
       {{"time", "s", "of the landing"}, [](const auto& d) { return d.time; }},
       {{"removal_time", "s", "when the bead left the chain"},
        [](const auto& d) { return d.removal_time; }}};
-  for (const BeadColumn& c : bead_columns()) {
-    if (c.name == "radius") {
-      columns.push_back({{"landing_radius", "m", "of the bead's link at the landing"},
-                         [](const auto& d) { return d.landing_radius; }});
-      columns.push_back({{"radius", "m", "of the bead's link when it left the chain"},
-                         [](const auto& d) { return d.radius; }});
-    }
-    if (c.deposited != nullptr)
-      columns.push_back(
-          {{c.name, c.unit, c.deposited},
-           [of = c.landed_value](const DepositedBead& d) { return of(d.bead); }});
-  }
+  const auto add = [&](const BeadColumn& c, std::size_t place) {
+    const bool carried = c.evolution == Evolution::carried;
+    columns.push_back(
+        {{c.name, c.unit, c.description + (carried ? "" : ", at the landing")},
+         [place, table](const DepositedBead& d) {
+           return column_values(d.bead, *table)[place];
+         }});
+  };
+  const std::size_t integrated = table->integrated().size();
+  for (std::size_t c = 0; c < integrated; ++c) add(table->integrated()[c], c);
+  if (!table->find_integrated("stress"))
+    columns.push_back({{"stress", "Pa", "there is none"}, [](const auto&) { return 0.; }});
+  columns.push_back({{"landing_radius", "m", "of the bead's link at the landing"},
+                     [](const auto& d) { return d.landing_radius; }});
+  columns.push_back({{"radius", "m", "of the bead's link when it left the chain"},
+                     [](const auto& d) { return d.radius; }});
+  for (std::size_t c = 0; c < table->carried().size(); ++c)
+    add(table->carried()[c], integrated + c);
+  // The volume stands last of these in an export.
   const auto volume = std::ranges::find(columns, "volume", &ColumnInfo::name);
-  std::rotate(volume, volume + 1, columns.end());
+  std::rotate(volume, volume + 1, volume + BeadTable::basic_carried);
   return columns;
 }
 
