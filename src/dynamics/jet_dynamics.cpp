@@ -21,6 +21,13 @@ void JetDynamics::hold(HeldEnds ends) {
 void JetDynamics::bind(const JetState& jet) {
   if (jet.table != table_) bind_columns(jet.table);
   chain_.bind(jet, jet.absorbing_plane);
+  resting_.clear();
+  for (std::size_t c = 0; c < table_->integrated().size(); ++c) {
+    const bool of_links = table_->integrated()[c].owner == Owner::link;
+    if (of_links) resting_.push_back(c * jet.beads()); // bead 0 owns none
+    for (const std::size_t k : of_links ? chain_.frozen() : chain_.held())
+      resting_.push_back(c * jet.beads() + k);
+  }
 }
 
 void JetDynamics::bind_columns(std::shared_ptr<const BeadTable> table) {
@@ -71,13 +78,7 @@ void JetDynamics::evaluate(double t, std::span<const double> y, std::span<double
   const auto absorbed = chain_.absorbed();
   if (!absorbed.empty() && absorbed.back() > stage.first)
     for (const std::size_t k : absorbed) force.set(k, force[absorbed.back() - 1]);
-  const auto table = table_->integrated();
-  for (std::size_t c = 0; c < table.size(); ++c) {
-    const bool of_links = table[c].owner == Owner::link;
-    if (of_links) rate[c * n] = 0; // bead 0 owns none
-    for (const std::size_t k : of_links ? chain_.frozen() : chain_.held())
-      rate[c * n + k] = 0;
-  }
+  for (const std::size_t i : resting_) rate[i] = 0;
 }
 
 void JetDynamics::linearize(double t, std::span<const double> y) {

@@ -146,8 +146,8 @@ TEST(OwnColumns, follow_a_refinement_by_either_remap) {
   for (const LinkRemap remap : {LinkRemap::conservative, LinkRemap::paper}) {
     JetState jet = marked_jet();
     const double before = sum_of(carried(jet, "solvent"));
-    RefinementRule rule{.remap = remap, .coarsen = {}, .collector = {}};
-    rule.mesh.length = 0.25;
+    RefinementRule rule;
+    rule.mesh.length = 0.25, rule.remap = remap;
     ASSERT_TRUE(refine_jet(jet, rule));
     ASSERT_EQ(jet.links(), 14U);
     EXPECT_NEAR(sum_of(carried(jet, "solvent")) / before, 1, 1e-14);
@@ -175,7 +175,7 @@ TEST(OwnColumns, can_keep_their_weighted_sum_in_a_refinement) {
     return total;
   };
   const double before = weighted(jet);
-  RefinementRule rule{.coarsen = {}, .collector = {}};
+  RefinementRule rule;
   rule.mesh.length = 0.25;
   ASSERT_TRUE(refine_jet(jet, rule));
   EXPECT_NEAR(weighted(jet) / before, 1, 1e-14);
@@ -183,8 +183,8 @@ TEST(OwnColumns, can_keep_their_weighted_sum_in_a_refinement) {
 
 TEST(OwnColumns, are_joined_with_the_links) {
   JetState jet = marked_jet();
-  RefinementRule rule{.coarsen = 3.0, .collector = {}};
-  rule.has_nozzle = false;
+  RefinementRule rule;
+  rule.coarsen = 3.0, rule.has_nozzle = false;
   ASSERT_TRUE(coarsen_jet(jet, rule));
   ASSERT_EQ(jet.links(), 3U); // 1 + 2, 3 + 4, 5
   EXPECT_EQ(carried(jet, "solvent"), (std::vector<double>{0, 1 + 4, 9 + 16, 25}));

@@ -80,6 +80,7 @@ private:
   std::vector<std::unique_ptr<ForceTerm>> terms_;
   std::shared_ptr<const BeadTable> table_; // that the terms are bound to
   std::vector<ForceTerm*> with_columns_;   // terms that add integrated columns
+  std::vector<std::size_t> resting_;       // entries of the state whose rate is zero
   std::shared_ptr<const Inflow> inflow_;
   ActingChain chain_;
   std::uint64_t evaluations_ = 0;
