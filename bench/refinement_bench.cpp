@@ -6,14 +6,17 @@
 #include <benchmark/benchmark.h>
 
 #include <cmath>
+#include <memory>
+#include <utility>
 
 namespace {
 
 using namespace ehdjet;
 
 JetState coil(std::size_t beads) {
-  JetState jet;
-  jet.y.resize(7 * beads);
+  auto table = std::make_shared<BeadTable>();
+  table->declare({.name = "stress", .unit = "Pa", .description = "", .weight = "volume"});
+  JetState jet = blank_jet(std::move(table), beads);
   jet.mass.assign(beads, 1e-10), jet.charge.assign(beads, 1e-12);
   jet.volume.assign(beads, 1e-13);
   const auto c = jet.columns();
@@ -22,7 +25,7 @@ JetState coil(std::size_t beads) {
     const double s = link * static_cast<double>(k), angle = s / radius;
     c.position().set(k, {0.1 * s, radius * std::cos(angle), radius * std::sin(angle)});
     c.velocity().set(k, {20, -5 * std::sin(angle), 5 * std::cos(angle)});
-    c.stress()[k] = 1e3 + s;
+    c.column(6)[k] = 1e3 + s;
   }
   return jet;
 }

@@ -286,10 +286,10 @@ Scene contracting(const Thread& thread, std::optional<double> coarsen) {
     const double x = static_cast<double>(k) * l;
     test::add_bead(s, {.position = {x, 0, 0},
                        .velocity = {rate * x, 0, 0},
-                       .stress = stress,
                        .volume = volume,
                        .mass = thread.density * volume,
-                       .charge = 0});
+                       .charge = 0,
+                       .declared = {stress}});
   }
   s.config.viscoelasticity = ViscoelasticityConfig{1e5, thread.viscosity};
   s.config.surface_tension =

@@ -100,7 +100,7 @@ Scene straight_chain(const Point& p, Modes modes) {
     b.y[k] = bends ? 1e-6 * l * noise(k + 100) : 0;
     b.z[k] = bends ? 1e-6 * l * noise(k + 200) : 0;
     b.vx[k] = b.vy[k] = b.vz[k] = 0;
-    b.stress[k] = 1e-9 * p.modulus * noise(k + 300);
+    stresses(b)[k] = 1e-9 * p.modulus * noise(k + 300);
   }
   return scene;
 }
@@ -116,7 +116,7 @@ void require_bounded(const JetState& jet, const Point& p) {
   const auto c = jet.columns();
   for (std::size_t k = 1; k < jet.beads(); ++k) {
     const double l = (c.position()[k] - c.position()[k - 1]).norm() / p.link_length;
-    const bool bounded = l > 1. / 3 && l < 3 && std::abs(c.stress()[k]) < 10 * p.modulus;
+    const bool bounded = l > 1. / 3 && l < 3 && std::abs(stress_of(c)[k]) < 10 * p.modulus;
     if (!bounded) throw Unbounded{};
   }
 }

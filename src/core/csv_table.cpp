@@ -3,6 +3,7 @@
 #include "ehdjet/core/error.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <system_error>
@@ -10,9 +11,20 @@
 
 namespace ehdjet {
 
-CsvTable::CsvTable(const std::filesystem::path& file,
-                   std::vector<std::string_view> required,
-                   std::vector<std::string_view> optional)
+std::string csv_name(std::string_view name, std::string_view unit) {
+  std::string full(name);
+  if (unit.empty() || unit == "1") return full;
+  full += '_';
+  for (const char c : unit)
+    if (c == '/' || c == ' ')
+      full += '_';
+    else if (c != '^')
+      full += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return full;
+}
+
+CsvTable::CsvTable(const std::filesystem::path& file, std::vector<std::string> required,
+                   const std::vector<std::string>& optional, bool others)
     : name_(file.string())
     , in_(file)
     , wanted_(std::move(required)) {
@@ -28,16 +40,19 @@ CsvTable::CsvTable(const std::filesystem::path& file,
   split();
   columns_ = fields_.size();
   for (std::size_t i = 0; i < fields_.size(); ++i) {
-    const auto found = std::ranges::find(wanted_, fields_[i].text);
-    if (found == wanted_.end()) continue;
-    std::size_t& position = position_[static_cast<std::size_t>(found - wanted_.begin())];
+    const auto column = static_cast<std::size_t>(std::ranges::find(wanted_, fields_[i].text)
+                                                 - wanted_.begin());
+    if (column == wanted_.size()) {
+      if (!others || fields_[i].text.empty()) continue;
+      wanted_.emplace_back(fields_[i].text), position_.push_back(absent);
+    }
+    std::size_t& position = position_[column];
     if (position != absent)
       refuse(fields_[i].start, "column " + std::string(fields_[i].text) + " appears twice");
     position = i;
   }
   for (std::size_t c = 0; c < required_count; ++c)
-    if (!has(c))
-      refuse(1, "column " + std::string(wanted_[c]) + " is missing from the header");
+    if (!has(c)) refuse(1, "column " + wanted_[c] + " is missing from the header");
 }
 
 bool CsvTable::next_row() {
@@ -56,8 +71,7 @@ double CsvTable::value(std::size_t column) const {
   double value = 0;
   const auto [end, error] = std::from_chars(text.begin(), text.end(), value);
   const auto refuse_value = [&](const char* quote, const char* why) {
-    refuse(start, std::string(wanted_[column])
-                      .append(" = ")
+    refuse(start, (wanted_[column] + " = ")
                       .append(quote)
                       .append(text)
                       .append(quote)

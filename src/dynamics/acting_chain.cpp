@@ -6,6 +6,7 @@ namespace ehdjet {
 
 void ActingChain::bind(const JetState& jet, std::optional<double> absorbing_plane) {
   mass_ = jet.mass, charge_ = jet.charge, volume_ = jet.volume, landed_ = jet.landed;
+  declared_ = jet.declared;
   absorbing_plane_ = absorbing_plane, absorbed_.clear();
   has_led_bead_ = jet.has_embryo;
   inverse_mass_.resize(mass_.size());
@@ -26,6 +27,7 @@ void ActingChain::bind(const JetState& jet, std::optional<double> absorbing_plan
   for (const std::size_t k : held_) moves_[k] = 0;
 
   stage_.mass = mass_, stage_.charge = charge_, stage_.volume = volume_;
+  stage_.declared = declared_;
   stage_.first = jet.first(), stage_.landed = landed_, stage_.moves = moves_;
 }
 

@@ -61,8 +61,8 @@ void ChainJacobian::solve(std::span<double> x) const {
   const std::size_t n = held_.size();
   const JetColumns<double> columns{x, n};
   const Vec3View r = columns.position(), v = columns.velocity();
-  const std::span<double> stress = columns.stress();
   const LinkDerivatives& l = links_;
+  const std::span<double> stress = l.sigma ? columns.column(*l.sigma) : std::span<double>{};
 
   // Forward: right-hand sides and elimination. What link k does to its two ends is met at k - 1
   // and at k.

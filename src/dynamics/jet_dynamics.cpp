@@ -9,11 +9,6 @@
 
 namespace ehdjet {
 
-void JetDynamics::set_rheology(std::unique_ptr<Rheology> rheology) {
-  rheology_ = rheology.get();
-  terms_.push_back(std::move(rheology));
-}
-
 void JetDynamics::set_inflow(std::shared_ptr<const Inflow> inflow) {
   inflow_ = std::move(inflow);
   chain_.constrain({.inflow = inflow_.get(), .ends = constraints().ends});
@@ -24,7 +19,31 @@ void JetDynamics::hold(HeldEnds ends) {
 }
 
 void JetDynamics::bind(const JetState& jet) {
+  if (jet.table != table_) bind_columns(jet.table);
   chain_.bind(jet, jet.absorbing_plane);
+  resting_.clear();
+  for (std::size_t c = 0; c < table_->integrated().size(); ++c) {
+    const bool of_links = table_->integrated()[c].owner == Owner::link;
+    if (of_links) resting_.push_back(c * jet.beads()); // bead 0 owns none
+    for (const std::size_t k : of_links ? chain_.frozen() : chain_.held())
+      resting_.push_back(c * jet.beads() + k);
+  }
+}
+
+void JetDynamics::bind_columns(std::shared_ptr<const BeadTable> table) {
+  table_ = std::move(table), with_columns_.clear();
+  std::size_t added = BeadTable::basic_integrated;
+  for (const auto& term : terms_) {
+    const auto columns = term->columns();
+    const auto count = static_cast<std::size_t>(
+        std::ranges::count(columns, Evolution::integrated, &BeadColumn::evolution));
+    for (const BeadColumn& c : columns)
+      EHDJET_EXPECTS(table_->find_integrated(c.name) || table_->find_carried(c.name));
+    if (count > 0) with_columns_.push_back(term.get());
+    added += count;
+    term->bind(*table_);
+  }
+  EHDJET_EXPECTS(added == table_->integrated().size()); // each column has somebody's rate
 }
 
 void JetDynamics::prescribe(double t, std::span<double> y) const {
@@ -43,7 +62,7 @@ void JetDynamics::evaluate(double t, std::span<const double> y, std::span<double
   for (double* f : {force.x.data(), force.y.data(), force.z.data()})
     std::fill(f + begin, f + end, 0.0);
   for (const auto& term : terms_) term->add_force(stage, force);
-  if (rheology_ != nullptr) rheology_->stress_rate(stage, rates.stress());
+  for (ForceTerm* term : with_columns_) term->set_column_rates(stage, rates);
 
   for (std::size_t c = 0; c < 3; ++c) { // dr/dt = v
     const double* velocity = y.data() + (c + 3) * n;
@@ -59,10 +78,7 @@ void JetDynamics::evaluate(double t, std::span<const double> y, std::span<double
   const auto absorbed = chain_.absorbed();
   if (!absorbed.empty() && absorbed.back() > stage.first)
     for (const std::size_t k : absorbed) force.set(k, force[absorbed.back() - 1]);
-  for (const std::size_t k : chain_.held())
-    for (std::size_t c = 0; c < rates.kinematic_columns; ++c) rate[c * n + k] = 0;
-  if (rheology_ != nullptr)
-    for (const std::size_t k : chain_.frozen()) rates.stress()[k] = 0;
+  for (const std::size_t i : resting_) rate[i] = 0;
 }
 
 void JetDynamics::linearize(double t, std::span<const double> y) {
@@ -87,8 +103,8 @@ void JetDynamics::add_time_derivative(double factor, std::span<double> out) cons
   rates.velocity().add(k, scale * (links.pull_lower[k] * velocity));
   if (!links.damping.empty())
     rates.velocity().add(k, scale * (links.damping[k] * acceleration));
-  if (rates.has_stress())
-    rates.stress()[k] -=
+  if (links.sigma)
+    rates.column(*links.sigma)[k] -=
         factor * (links.stretching[k].dot(acceleration) + links.turning[k].dot(velocity));
 }
 
@@ -150,13 +166,13 @@ std::string JetDynamics::diagnosis(double t, std::span<const double> y, std::siz
                               term->name(), largest, largest * chain_.inverse_mass()[bead]);
     }
   }
-  if (rheology_ != nullptr) {
-    const std::span<double> rate = b.subspan(0, n);
-    rheology_->stress_rate(stage, rate);
-    for (std::size_t k = 0; k < n; ++k)
-      if (moves(k) && !std::isfinite(rate[k]))
-        return fmt::format("bead {}: the stress rate of {} is not a number", k,
-                           rheology_->name());
+  buffer.assign(y.size(), 0.0);
+  for (ForceTerm* term : with_columns_) {
+    term->set_column_rates(stage, {buffer, n});
+    for (std::size_t i = 0; i < buffer.size(); ++i)
+      if (moves(i % n) && !std::isfinite(buffer[i]))
+        return fmt::format("bead {}: the {} rate of {} is not a number", i % n,
+                           table_->integrated()[i / n].name, term->name());
   }
   return fmt::format("bead {}: {}", bead, strongest);
 }

@@ -2,6 +2,8 @@
 
 #include "ehdjet/events/root.hpp"
 
+#include <utility>
+
 namespace ehdjet {
 namespace {
 
@@ -21,18 +23,14 @@ double recession(const DenseStep& step, const Nozzle& nozzle, std::size_t bead) 
 
 } // namespace
 
-JetState EmbryoInflow::start(std::size_t integrated_columns) const {
+JetState EmbryoInflow::start(std::shared_ptr<const BeadTable> table) const {
   const LinkContent& born = rule_.born;
-  JetState jet;
-  jet.y.assign(integrated_columns, 0.0);
-  jet.mass = {born.mass}, jet.charge = {born.charge}, jet.volume = {born.volume};
-  insert_bead(jet, 1,
-              {.position = {rule_.link_length, 0, 0},
-               .velocity = {nozzle().fluid_velocity, 0, 0},
-               .stress = 0,
-               .volume = born.volume,
-               .mass = born.mass,
-               .charge = born.charge});
+  JetState jet = blank_jet(std::move(table), 0);
+  Bead bead{.volume = born.volume, .mass = born.mass, .charge = born.charge};
+  insert_bead(jet, 0, bead);
+  bead.position = {rule_.link_length, 0, 0};
+  bead.velocity = {nozzle().fluid_velocity, 0, 0};
+  insert_bead(jet, 1, bead);
   return jet;
 }
 
@@ -125,7 +123,6 @@ void Insertion::apply(EventContext& context) {
   insert_bead(jet, 1,
               {.position = inflow_.embryo().position(r[0], r[1]),
                .velocity = {inflow_.nozzle().fluid_velocity, 0, 0},
-               .stress = 0,
                .volume = born.volume,
                .mass = born.mass,
                .charge = born.charge});

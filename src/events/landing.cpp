@@ -102,7 +102,7 @@ void Landing::apply(EventContext& context) {
   located_.reset(), passing_.clear();
   for (const Arrival& a : arrived) {
     put_on_collector(context.jet, a);
-    context.ledger.impact_speed = a.velocity.norm();
+    context.ledger.impact_speed = Vec3(a.state[3], a.state[4], a.state[5]).norm();
     context.ledger.collector_radius =
         std::ranges::find(context.jet.landed, a.bead, &LandedBead::bead)->radius;
     ++context.statistics.landings;
@@ -129,36 +129,29 @@ std::vector<Landing::Arrival> Landing::arrivals(const JetState& jet) const {
 
 Landing::Arrival Landing::arrival_inside(const DenseStep& step, std::size_t bead,
                                          double theta) const {
-  Vec3 position = step.position(theta, bead);
-  position.x() = distance_;
+  std::vector<double> state{distance_};
+  for (std::size_t c = 1; c < step.jet.table->integrated().size(); ++c)
+    state.push_back(step.value(theta, c, bead));
+  const Vec3 position(state[0], state[1], state[2]);
   const double length = bead > first_bead_
                             ? (position - step.position(theta, bead - 1)).norm()
                             : link_length(step.jet, bead);
   return {.bead = bead,
           .time = step.time(theta),
-          .position = position,
-          .velocity = step.velocity(theta, bead),
-          .stress = step.jet.columns().has_stress()
-                        ? step.value(theta, JetColumns<double>::kinematic_columns, bead)
-                        : 0.0,
+          .state = std::move(state),
           .link_length = length};
 }
 
 Landing::Arrival Landing::arrival_now(const JetState& jet, std::size_t bead) const {
-  const Bead b = bead_at(jet, bead);
-  return {.bead = bead,
-          .time = jet.time,
-          .position = {distance_, b.position.y(), b.position.z()},
-          .velocity = b.velocity,
-          .stress = b.stress,
-          .link_length = {}};
+  std::vector<double> state{distance_};
+  for (std::size_t c = 1; c < jet.table->integrated().size(); ++c)
+    state.push_back(jet.columns().column(c)[bead]);
+  return {.bead = bead, .time = jet.time, .state = std::move(state), .link_length = {}};
 }
 
 void Landing::put_on_collector(JetState& jet, const Arrival& arrival) {
-  const auto c = jet.columns();
-  c.position().set(arrival.bead, arrival.position);
-  c.velocity().set(arrival.bead, arrival.velocity);
-  if (c.has_stress()) c.stress()[arrival.bead] = arrival.stress;
+  for (std::size_t c = 0; c < arrival.state.size(); ++c)
+    jet.columns().column(c)[arrival.bead] = arrival.state[c];
   const std::size_t link = arrival.bead > 0 ? arrival.bead : jet.first(); // 0 owns none
   const double length = arrival.link_length.value_or(link_length(jet, link));
   const LandedBead landed{.bead = arrival.bead,

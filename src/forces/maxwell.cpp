@@ -12,10 +12,22 @@ Maxwell::Maxwell(double elastic_modulus, double viscosity)
   EHDJET_EXPECTS(elastic_modulus > 0 && viscosity > 0);
 }
 
+std::vector<BeadColumn> Maxwell::columns() const {
+  return {{.name = "stress",
+           .unit = "Pa",
+           .description = "of that link",
+           .weight = "volume",
+           .error_scale = 0.1 * elastic_modulus_}};
+}
+
+void Maxwell::bind(const BeadTable& table) {
+  stress_ = table.find_integrated("stress").value();
+}
+
 void Maxwell::add_force(const Stage& stage, Vec3View force) {
   const Links& links = stage.links();
   const double *l = links.length.data(), *v = stage.volume.data(),
-               *sigma = stage.columns.stress().data();
+               *sigma = stage.columns.column(stress_).data();
   double* t = per_link(links, tension_per_length_);
 #pragma omp simd
   for (std::size_t k = links.first; k <= links.last; ++k)
@@ -23,13 +35,13 @@ void Maxwell::add_force(const Stage& stage, Vec3View force) {
   add_link_tension(links, tension_per_length_, stage.targets, force);
 }
 
-void Maxwell::stress_rate(const Stage& stage, std::span<double> rate) {
+void Maxwell::set_column_rates(const Stage& stage, JetColumns<double> rates) {
   const Links& links = stage.links();
   const auto v = stage.columns.velocity();
   const double *l = links.length.data(), *dx = links.dx.data(), *dy = links.dy.data(),
                *dz = links.dz.data(), *vx = v.x.data(), *vy = v.y.data(), *vz = v.z.data(),
-               *sigma = stage.columns.stress().data();
-  double* out = rate.data();
+               *sigma = stage.columns.column(stress_).data();
+  double* out = rates.column(stress_).data();
   const double g = elastic_modulus_, relaxation = relaxation_rate_;
   const auto link = [=](std::size_t k, std::size_t upstream) {
     const double stretching = (vx[k] - vx[upstream]) * dx[k]
@@ -58,7 +70,8 @@ void Maxwell::stress_rate(const Stage& stage, std::span<double> rate) {
 void Maxwell::add_derivatives(const Stage& stage, LinkDerivatives& out) {
   const Links& links = stage.links();
   const auto v = stage.columns.velocity();
-  const auto sigma = stage.columns.stress();
+  const auto sigma = stage.columns.column(stress_);
+  out.sigma = stress_;
   auto landed = stage.landed.begin();
   for (std::size_t k = links.first; k <= links.last; ++k) {
     const std::size_t upstream = links.upstream(k);
@@ -91,7 +104,7 @@ TermAccount Maxwell::account() const {
 
 double Maxwell::energy(const Stage& stage) {
   const Links& links = stage.links();
-  const auto sigma = stage.columns.stress();
+  const auto sigma = stage.columns.column(stress_);
   double energy = 0;
   for (std::size_t k = links.first; k <= links.last; ++k)
     energy += stage.volume[k] * sigma[k] * sigma[k] / (2 * elastic_modulus_);
@@ -103,7 +116,7 @@ double Maxwell::energy(const Stage& stage) {
 void Maxwell::add_power(const Stage& stage, Exchange& exchange) {
   const Links& links = stage.links();
   const auto v = stage.columns.velocity();
-  const auto sigma = stage.columns.stress();
+  const auto sigma = stage.columns.column(stress_);
   for (std::size_t k = links.first; k <= links.last; ++k) {
     const std::size_t up = links.upstream(k);
     const double volume = stage.volume[k], l = links.length[k];

@@ -1,8 +1,8 @@
+#include "ehdjet/core/csv_table.hpp"
 #include "ehdjet/core/error.hpp"
 #include "ehdjet/io/export.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <limits>
 #include <numbers>
 #include <numeric>
@@ -17,22 +17,10 @@ namespace ehdjet {
 
 namespace {
 
-/// What follows a name in a header: "kg m/s" gives "_kg_m_s".
-std::string suffix(const std::string& unit) {
-  if (unit == "1") return "";
-  std::string text = "_";
-  for (const char c : unit)
-    if (c != '^')
-      text += c == ' ' || c == '/'
-                  ? '_'
-                  : static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return text;
-}
-
 void print_csv(const RunTable& table, TextOutput& output) {
   const auto& columns = table.columns;
   for (std::size_t c = 0; c < columns.size(); ++c)
-    output.print("{}{}{}", c == 0 ? "" : ",", columns[c].name, suffix(columns[c].unit));
+    output.print("{}{}", c == 0 ? "" : ",", csv_name(columns[c].name, columns[c].unit));
   output.print("\n");
   for (std::size_t row = 0; row < table.rows(); ++row) {
     for (std::size_t c = 0; c < columns.size(); ++c)
@@ -42,14 +30,17 @@ void print_csv(const RunTable& table, TextOutput& output) {
   output.close();
 }
 
-/// A table with its columns in the order of `list`, without those that the run does not have.
+/// A table with its columns in the order of `list`, those that are not in it at the end.
 template <class List>
-RunTable in_order(const RunTable& table, const List& list) {
-  RunTable ordered;
-  for (const ColumnInfo& info : list)
-    if (const RunTable::Column* column = table.find(info.name))
-      ordered.columns.push_back(*column);
-  return ordered;
+RunTable in_order(RunTable table, const List& list) {
+  auto next = table.columns.begin();
+  for (const ColumnInfo& info : list) {
+    const auto found =
+        std::find_if(next, table.columns.end(),
+                     [&](const RunTable::Column& c) { return c.name == info.name; });
+    if (found != table.columns.end()) std::rotate(next++, found, found + 1);
+  }
+  return table;
 }
 
 std::vector<double> arc_length(const RunTable& deposit) {
@@ -68,7 +59,7 @@ void export_table(const RunReader& run, const std::string& part, TextOutput& out
   if (part == "observables") table = in_order(table, observable_columns());
   if (part == "refinements") table = in_order(table, refinement_columns());
   if (part == "deposit") {
-    table = in_order(table, deposit_columns());
+    table = in_order(table, deposit_columns(exported_table()));
     table.columns.push_back({"arc_length", "m", arc_length(table)});
   }
   print_csv(table, output);
@@ -79,8 +70,9 @@ void export_beads(const RunReader& run, std::optional<double> time, TextOutput& 
   std::vector<double> numbers(frame.rows());
   std::iota(numbers.begin(), numbers.end(), 0.0);
   RunTable table{{{"bead", "1", std::move(numbers)}}};
-  for (const BeadColumn& c : bead_columns())
+  for (const FrameColumn& c : frame_columns(*exported_table()))
     table.columns.push_back({c.name, c.unit, column_or_zeros(frame, c.name)});
+  for (RunTable::Column& c : further_columns(frame)) table.columns.push_back(std::move(c));
   print_csv(table, output);
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base64.hpp"
+#include "record_columns.hpp"
 #include "selected_frames.hpp"
 
 namespace ehdjet {
@@ -58,6 +59,8 @@ void print_poly_line(const Frame& frame, TextOutput& output) {
   print_array(output, "Float64", "stress", 1, column_or_zeros(frame, "stress"));
   print_array(output, "Float64", "velocity", 3, vectors(frame, "vx", "vy", "vz"));
   print_array(output, "Float64", "charge", 1, frame["charge"]);
+  for (const RunTable::Column& c : further_columns(frame))
+    print_array(output, "Float64", c.name.c_str(), 1, c.values);
   output.print("</PointData>\n<Points>\n");
   print_array(output, "Float64", "Points", 3, vectors(frame, "x", "y", "z"));
   output.print("</Points>\n<Lines>\n");

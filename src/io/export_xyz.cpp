@@ -2,8 +2,11 @@
 
 #include <cstddef>
 #include <optional>
+#include <string>
+#include <utility>
 #include <vector>
 
+#include "record_columns.hpp"
 #include "selected_frames.hpp"
 
 namespace ehdjet {
@@ -17,13 +20,18 @@ char species(const Frame& frame, std::size_t bead) {
 }
 
 void print(const Frame& frame, TextOutput& output) {
-  output.print(
-      "{}\nProperties=species:S:1:pos:R:3:velo:R:3:radius:R:1:stress:R:1:charge:R:1 "
-      "Time={:.17g} Units=\"s m m/s m Pa C\"\n",
-      frame.rows(), frame.time);
   std::vector<std::vector<double>> columns;
   for (const char* name : {"x", "y", "z", "vx", "vy", "vz", "radius", "stress", "charge"})
     columns.push_back(column_or_zeros(frame, name));
+  std::string properties, units;
+  for (RunTable::Column& c : further_columns(frame)) {
+    properties += ":" + c.name + ":R:1", units += " " + c.unit;
+    columns.push_back(std::move(c.values));
+  }
+  output.print(
+      "{}\nProperties=species:S:1:pos:R:3:velo:R:3:radius:R:1:stress:R:1:charge:R:1{} "
+      "Time={:.17g} Units=\"s m m/s m Pa C{}\"\n",
+      frame.rows(), properties, frame.time, units);
   for (std::size_t k = 0; k < frame.rows(); ++k) {
     output.print("{}", species(frame, k));
     for (const auto& column : columns) output.print(" {:.17g}", column[k]);

@@ -68,43 +68,15 @@ auto number_of(std::size_t RefinementRecord::*value) {
   return [value](const RefinementRecord& r) { return static_cast<double>(r.*value); };
 }
 
-/// A column of the vector that is integrated, and the same of a bead at its landing.
-BeadColumn integrated(ColumnInfo info, std::size_t column, const char* deposited,
-                      std::function<double(const Bead&)> landed_value) {
-  const auto values = [column](const JetSnapshot& s) {
-    EHDJET_EXPECTS(s.columns.flat.size() > column * s.columns.beads);
-    return s.columns.column(column);
-  };
-  return {std::move(info), values, deposited, std::move(landed_value)};
-}
-
-auto position(int component) {
-  return [component](const Bead& b) { return b.position[component]; };
-}
-
-auto velocity(int component) {
-  return [component](const Bead& b) { return b.velocity[component]; };
-}
-
-/// A column that a link carries along.
-BeadColumn carried(ColumnInfo info, std::vector<double> JetState::*values,
-                   double Bead::*landed_value) {
-  return {
-      std::move(info),
-      [values](const JetSnapshot& s) -> std::span<const double> { return s.jet.*values; },
-      "of the bead's link", [landed_value](const Bead& b) { return b.*landed_value; }};
-}
-
 /// Of all beads, computed; `fill(snapshot, values)` finds zeros.
 template <class Fill>
-BeadColumn computed(ColumnInfo info, Fill fill) {
-  const auto all = [fill, values = std::vector<double>()](
-                       const JetSnapshot& s) mutable -> std::span<const double> {
+auto computed(Fill fill) {
+  return [fill, values = std::vector<double>()](
+             const JetSnapshot& s) mutable -> std::span<const double> {
     values.assign(s.jet.beads(), 0.0);
     fill(s, values);
     return values;
   };
-  return {std::move(info), all, nullptr, {}};
 }
 
 void fill_radius(const JetSnapshot& s, std::vector<double>& values) {
@@ -187,46 +159,71 @@ std::vector<RecordColumn<RefinementRecord>> refinement_columns() {
        [](const auto& r) { return r.worst_link; }}};
 }
 
-std::vector<BeadColumn> bead_columns() {
-  const char *place = "position on the collector", *speed = "velocity at the landing";
-  return {
-      integrated({"x", "m", "position along the axis, from the nozzle"}, 0, place,
-                 position(0)),
-      integrated({"y", "m", "position across the axis"}, 1, place, position(1)),
-      integrated({"z", "m", "position across the axis"}, 2, place, position(2)),
-      integrated({"vx", "m/s", "velocity"}, 3, speed, velocity(0)),
-      integrated({"vy", "m/s", "velocity"}, 4, speed, velocity(1)),
-      integrated({"vz", "m/s", "velocity"}, 5, speed, velocity(2)),
-      integrated({"stress", "Pa", "of that link"}, 6, "at the landing", &Bead::stress),
-      computed({"radius", "m", "of the link to the bead upstream"}, fill_radius),
-      carried({"volume", "m^3", "of that link"}, &JetState::volume, &Bead::volume),
-      carried({"mass", "kg", "of that link"}, &JetState::mass, &Bead::mass),
-      carried({"charge", "C", "of that link"}, &JetState::charge, &Bead::charge),
-      computed({"landed", "1", "1: the bead rests on the collector", flag}, mark_landed),
-      computed({"embryo", "1", "1: the bead is still forming at the nozzle", flag},
-               mark_embryo)};
+std::vector<FrameColumn> frame_columns(const BeadTable& table) {
+  const auto info = [](const BeadColumn& c) {
+    return ColumnInfo{c.name, c.unit, c.description};
+  };
+  std::vector<FrameColumn> columns;
+  for (const BeadColumn& c : table.integrated())
+    columns.push_back({info(c), [place = columns.size()](const JetSnapshot& s) {
+                         return s.columns.column(place);
+                       }});
+  columns.push_back(
+      {{"radius", "m", "of the link to the bead upstream"}, computed(fill_radius)});
+  for (std::size_t c = 0; c < table.carried().size(); ++c)
+    columns.push_back(
+        {info(table.carried()[c]), [c](const JetSnapshot& s) -> std::span<const double> {
+           return s.jet.carried(c);
+         }});
+  columns.push_back({{"landed", "1", "1: the bead rests on the collector", flag},
+                     computed(mark_landed)});
+  columns.push_back({{"embryo", "1", "1: the bead is still forming at the nozzle", flag},
+                     computed(mark_embryo)});
+  return columns;
 }
 
-// Those of the link's own stand where the first files had them: after the radii, volume last.
-std::vector<RecordColumn<DepositedBead>> deposit_columns() {
+std::shared_ptr<const BeadTable> exported_table() {
+  auto table = std::make_shared<BeadTable>();
+  table->declare({.name = "stress", .unit = "Pa", .description = ""});
+  return table;
+}
+
+std::vector<RunTable::Column> further_columns(const Frame& frame) {
+  const auto usual = frame_columns(*exported_table());
+  std::vector<RunTable::Column> further = frame.columns;
+  std::erase_if(further, [&](const RunTable::Column& c) {
+    return std::ranges::find(usual, c.name, &ColumnInfo::name) != usual.end();
+  });
+  return further;
+}
+
+std::vector<RecordColumn<DepositedBead>>
+deposit_columns(std::shared_ptr<const BeadTable> table) {
   std::vector<RecordColumn<DepositedBead>> columns{
       {{"time", "s", "of the landing"}, [](const auto& d) { return d.time; }},
       {{"removal_time", "s", "when the bead left the chain"},
        [](const auto& d) { return d.removal_time; }}};
-  for (const BeadColumn& c : bead_columns()) {
-    if (c.name == "radius") {
-      columns.push_back({{"landing_radius", "m", "of the bead's link at the landing"},
-                         [](const auto& d) { return d.landing_radius; }});
-      columns.push_back({{"radius", "m", "of the bead's link when it left the chain"},
-                         [](const auto& d) { return d.radius; }});
-    }
-    if (c.deposited != nullptr)
-      columns.push_back(
-          {{c.name, c.unit, c.deposited},
-           [of = c.landed_value](const DepositedBead& d) { return of(d.bead); }});
-  }
+  const auto add = [&](const BeadColumn& c, std::size_t place) {
+    const bool carried = c.evolution == Evolution::carried;
+    columns.push_back(
+        {{c.name, c.unit, c.description + (carried ? "" : ", at the landing")},
+         [place, table](const DepositedBead& d) {
+           return column_values(d.bead, *table)[place];
+         }});
+  };
+  const std::size_t integrated = table->integrated().size();
+  for (std::size_t c = 0; c < integrated; ++c) add(table->integrated()[c], c);
+  if (!table->find_integrated("stress"))
+    columns.push_back({{"stress", "Pa", "there is none"}, [](const auto&) { return 0.; }});
+  columns.push_back({{"landing_radius", "m", "of the bead's link at the landing"},
+                     [](const auto& d) { return d.landing_radius; }});
+  columns.push_back({{"radius", "m", "of the bead's link when it left the chain"},
+                     [](const auto& d) { return d.radius; }});
+  for (std::size_t c = 0; c < table->carried().size(); ++c)
+    add(table->carried()[c], integrated + c);
+  // The volume stands last of these in an export.
   const auto volume = std::ranges::find(columns, "volume", &ColumnInfo::name);
-  std::rotate(volume, volume + 1, columns.end());
+  std::rotate(volume, volume + 1, volume + BeadTable::basic_carried);
   return columns;
 }
 

@@ -3,8 +3,10 @@
 #include "ehdjet/jet/ledger.hpp"
 #include "ehdjet/observers/observer.hpp"
 #include "ehdjet/run_files/column.hpp"
+#include "ehdjet/run_files/run_table.hpp"
 
 #include <functional>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -21,17 +23,21 @@ struct RecordColumn : ColumnInfo {
 };
 
 std::vector<RecordColumn<JetSnapshot>> observable_columns();
-std::vector<RecordColumn<DepositedBead>> deposit_columns();
+/// Of beads with these columns, and `stress` in any case.
+std::vector<RecordColumn<DepositedBead>>
+deposit_columns(std::shared_ptr<const BeadTable> table);
 std::vector<RecordColumn<RefinementRecord>> refinement_columns();
 
-/// A number that each bead has: in a frame, one per bead; at its landing, if the deposit has it.
-struct BeadColumn : ColumnInfo {
+/// A number that each bead of a frame has.
+struct FrameColumn : ColumnInfo {
   std::function<std::span<const double>(const JetSnapshot&)> values;
-  const char* deposited = nullptr; ///< description in the deposit
-  std::function<double(const Bead&)> landed_value;
 };
 
 /// The columns of /beads, in the order of an export.
-std::vector<BeadColumn> bead_columns();
+std::vector<FrameColumn> frame_columns(const BeadTable& table);
+/// The columns of beads that every export has, also that of a run without stress.
+std::shared_ptr<const BeadTable> exported_table();
+/// What a frame has besides `frame_columns(*exported_table())`.
+std::vector<RunTable::Column> further_columns(const Frame& frame);
 
 } // namespace ehdjet

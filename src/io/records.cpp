@@ -72,14 +72,12 @@ std::vector<RecordColumn<Row>> with(bool wanted, std::string_view name,
 /// One list of columns that are as long as the jet has beads, and where each frame ends in them.
 class Frames final : public Observer {
 public:
-  Frames(std::shared_ptr<RunFile> file, double interval, bool with_stress)
+  Frames(std::shared_ptr<RunFile> file, double interval, const BeadTable& table)
       : file_(std::move(file))
       , schedule_(interval)
-      , columns_(bead_columns()) {
+      , columns_(frame_columns(table)) {
     EHDJET_EXPECTS(interval > 0);
-    if (!with_stress)
-      std::erase_if(columns_, [](const auto& c) { return c.name == "stress"; });
-    for (const BeadColumn& c : columns_)
+    for (const FrameColumn& c : columns_)
       data_sets_.push_back(&file_->add_column("beads", c, 4 * chunk_rows));
     time_ = &file_->add_column("frames", {"time", "s", "of each frame"}, chunk_rows);
     offset_ = &file_->add_column("frames",
@@ -109,7 +107,7 @@ public:
 private:
   std::shared_ptr<RunFile> file_;
   Schedule schedule_;
-  std::vector<BeadColumn> columns_;
+  std::vector<FrameColumn> columns_;
   std::vector<Column*> data_sets_;
   Column *time_ = nullptr, *offset_ = nullptr;
   std::size_t rows_ = 0;
@@ -135,13 +133,14 @@ std::unique_ptr<Observer> record_observables(std::shared_ptr<RunFile> file, doub
 }
 
 std::unique_ptr<Observer> record_frames(std::shared_ptr<RunFile> file, double interval,
-                                        bool with_stress) {
-  return std::make_unique<Frames>(std::move(file), interval, with_stress);
+                                        const BeadTable& table) {
+  return std::make_unique<Frames>(std::move(file), interval, table);
 }
 
-std::unique_ptr<Observer> record_deposit(std::shared_ptr<RunFile> file) {
+std::unique_ptr<Observer> record_deposit(std::shared_ptr<RunFile> file,
+                                         std::shared_ptr<const BeadTable> table) {
   return std::make_unique<Record<DepositedBead>>(std::move(file), "deposit",
-                                                 deposit_columns());
+                                                 deposit_columns(std::move(table)));
 }
 
 std::unique_ptr<Observer> record_refinements(std::shared_ptr<RunFile> file,

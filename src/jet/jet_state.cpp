@@ -3,19 +3,45 @@
 #include "ehdjet/core/error.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <iterator>
 #include <numbers>
+#include <string>
+#include <utility>
 
 namespace ehdjet {
 namespace {
 
-constexpr std::size_t max_columns = JetColumns<double>::kinematic_columns + 1;
-
-std::array<double, max_columns> column_values(const Bead& b) {
-  return {b.position.x(), b.position.y(), b.position.z(), b.velocity.x(),
-          b.velocity.y(), b.velocity.z(), b.stress};
+void archive_columns(const Archive& a, JetState& jet) {
+  const BeadTable& table = *jet.table;
+  if (a.is_reading()) {
+    const auto names = a.names();
+    for (const std::string& name : names)
+      if (!table.find_integrated(name) && !table.find_carried(name))
+        throw InputError("the checkpoint has a column " + name
+                         + ", which the scene does not have");
+    for (const auto columns : {table.integrated(), table.carried()})
+      for (const BeadColumn& c : columns)
+        if (std::ranges::find(names, c.name) == names.end())
+          throw InputError("the checkpoint has no column " + c.name
+                           + ", which the scene has");
+  }
+  const auto checked = [&](const std::string& name, std::vector<double>& values) {
+    a(name, values);
+    if (values.size() < 2 || values.size() != jet.beads())
+      throw InputError("the checkpoint is damaged: its columns have different lengths");
+  };
+  for (std::size_t c = 0; c < table.carried().size(); ++c)
+    checked(table.carried()[c].name, jet.carried(c));
+  std::vector<double> y;
+  for (std::size_t c = 0; c < table.integrated().size(); ++c) {
+    std::vector<double> column;
+    if (!a.is_reading())
+      column.assign(jet.columns().column(c).begin(), jet.columns().column(c).end());
+    checked(table.integrated()[c].name, column);
+    y.insert(y.end(), column.begin(), column.end());
+  }
+  jet.y = std::move(y);
 }
 
 auto at_offset(std::vector<double>& v, std::size_t i) {
@@ -30,8 +56,7 @@ bool JetState::is_landed(std::size_t bead) const {
 }
 
 void archive(const Archive& a, JetState& jet) {
-  a("time", jet.time), a("y", jet.y);
-  a("mass", jet.mass), a("charge", jet.charge), a("volume", jet.volume);
+  a("time", jet.time), archive_columns(a.part("columns"), jet);
   a("has_embryo", jet.has_embryo), a("absorbing_plane", jet.absorbing_plane);
   std::vector<double> bead, time, radius;
   for (const LandedBead& l : jet.landed) {
@@ -40,20 +65,29 @@ void archive(const Archive& a, JetState& jet) {
   }
   a("landed_bead", bead), a("landed_time", time), a("landed_radius", radius);
   if (!a.is_reading()) return;
-  const std::size_t n = jet.beads(), landed = bead.size();
-  if (n < 2 || jet.y.size() % n != 0 || jet.charge.size() != n || jet.volume.size() != n
-      || time.size() != landed || radius.size() != landed)
-    throw InputError("the checkpoint is damaged: its columns have different lengths");
+  if (time.size() != bead.size() || radius.size() != bead.size())
+    throw InputError("the checkpoint is damaged: its landed beads have different lengths");
   jet.landed.clear();
-  for (std::size_t i = 0; i < landed; ++i)
+  for (std::size_t i = 0; i < bead.size(); ++i)
     jet.landed.push_back({static_cast<std::size_t>(bead[i]), time[i], radius[i]});
+}
+
+JetState blank_jet(std::shared_ptr<const BeadTable> table, std::size_t beads) {
+  JetState jet;
+  jet.table = std::move(table);
+  jet.y.resize(jet.table->integrated().size() * beads);
+  jet.declared.resize(jet.table->carried().size() - BeadTable::basic_carried);
+  for (std::size_t c = 0; c < jet.table->carried().size(); ++c)
+    jet.carried(c).resize(beads);
+  return jet;
 }
 
 void insert_bead(JetState& jet, std::size_t at, const Bead& bead) {
   const std::size_t n = jet.beads();
-  EHDJET_EXPECTS(n > 0 && at <= n);
-  const std::size_t columns = jet.y.size() / n;
-  const auto values = column_values(bead);
+  EHDJET_EXPECTS(at <= n);
+  const std::size_t columns = jet.table->integrated().size();
+  EHDJET_EXPECTS(jet.y.size() == columns * n);
+  const auto values = column_values(bead, *jet.table);
 
   // Column c moves up by c places below `at` and by c + 1 above it; the last column first, so
   // that nothing is overwritten before it has moved.
@@ -67,9 +101,8 @@ void insert_bead(JetState& jet, std::size_t at, const Bead& bead) {
     if (moved > 0) std::move_backward(column, split, split + moved);
     *(split + moved) = values[c];
   }
-  jet.mass.insert(at_offset(jet.mass, at), bead.mass);
-  jet.charge.insert(at_offset(jet.charge, at), bead.charge);
-  jet.volume.insert(at_offset(jet.volume, at), bead.volume);
+  for (std::size_t c = 0; c < jet.table->carried().size(); ++c)
+    jet.carried(c).insert(at_offset(jet.carried(c), at), values[columns + c]);
   for (LandedBead& l : jet.landed)
     if (l.bead >= at) ++l.bead;
 }
@@ -77,25 +110,49 @@ void insert_bead(JetState& jet, std::size_t at, const Bead& bead) {
 void remove_leading_bead(JetState& jet) {
   const std::size_t n = jet.beads();
   EHDJET_EXPECTS(n > 1);
-  const std::size_t columns = jet.y.size() / n;
+  const std::size_t columns = jet.table->integrated().size();
+  EHDJET_EXPECTS(jet.y.size() == columns * n);
   for (std::size_t c = 1; c < columns; ++c) {
     const auto column = at_offset(jet.y, c * n);
     std::move(column, column + static_cast<std::ptrdiff_t>(n - 1),
               at_offset(jet.y, c * (n - 1)));
   }
   jet.y.resize(columns * (n - 1));
-  jet.mass.pop_back(), jet.charge.pop_back(), jet.volume.pop_back();
+  for (std::size_t c = 0; c < jet.table->carried().size(); ++c) jet.carried(c).pop_back();
   if (!jet.landed.empty() && jet.landed.back().bead == n - 1) jet.landed.pop_back();
 }
 
+std::vector<double> column_values(const Bead& bead, const BeadTable& table) {
+  const auto integrated = table.integrated().subspan(BeadTable::basic_integrated);
+  const auto carried = table.carried().subspan(BeadTable::basic_carried);
+  EHDJET_EXPECTS(bead.declared.empty()
+                 || bead.declared.size() == integrated.size() + carried.size());
+  std::vector<double> values{bead.position.x(), bead.position.y(), bead.position.z(),
+                             bead.velocity.x(), bead.velocity.y(), bead.velocity.z()};
+  std::size_t next = 0;
+  const auto append = [&](std::span<const BeadColumn> columns) {
+    for (const BeadColumn& c : columns)
+      values.push_back(bead.declared.empty() ? c.at_birth : bead.declared[next++]);
+  };
+  append(integrated);
+  values.insert(values.end(), {bead.volume, bead.mass, bead.charge});
+  append(carried);
+  return values;
+}
+
 Bead bead_at(const JetState& jet, std::size_t bead) {
-  const auto c = jet.columns();
-  return {.position = c.position()[bead],
-          .velocity = c.velocity()[bead],
-          .stress = c.has_stress() ? c.stress()[bead] : 0.0,
-          .volume = jet.volume[bead],
-          .mass = jet.mass[bead],
-          .charge = jet.charge[bead]};
+  const auto columns = jet.columns();
+  Bead b{.position = columns.position()[bead],
+         .velocity = columns.velocity()[bead],
+         .volume = jet.volume[bead],
+         .mass = jet.mass[bead],
+         .charge = jet.charge[bead]};
+  const BeadTable& table = *jet.table;
+  for (std::size_t c = BeadTable::basic_integrated; c < table.integrated().size(); ++c)
+    b.declared.push_back(columns.column(c)[bead]);
+  for (std::size_t c = BeadTable::basic_carried; c < table.carried().size(); ++c)
+    b.declared.push_back(jet.carried(c)[bead]);
+  return b;
 }
 
 double link_length(const JetState& jet, std::size_t bead) {

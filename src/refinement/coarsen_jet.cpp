@@ -6,24 +6,22 @@
 namespace ehdjet {
 namespace {
 
-// Bead k disappears; bead k+1 gets its link and takes over what it carried. Momentum and V sigma
-// are kept.
+// Bead k disappears; bead k+1 gets its link and takes over what it carried.
 void join_with_next(JetState& jet, std::size_t k) {
-  const auto c = jet.columns();
-  const double mass = jet.mass[k] + jet.mass[k + 1];
-  const double volume = jet.volume[k] + jet.volume[k + 1];
-  c.velocity().set(k + 1,
-                   (jet.mass[k] * c.velocity()[k] + jet.mass[k + 1] * c.velocity()[k + 1])
-                       / mass);
-  if (c.has_stress())
-    c.stress()[k + 1] =
-        (jet.volume[k] * c.stress()[k] + jet.volume[k + 1] * c.stress()[k + 1]) / volume;
-  jet.mass[k + 1] = mass, jet.volume[k + 1] = volume;
-  jet.charge[k + 1] += jet.charge[k];
+  const BeadTable& table = *jet.table;
+  for (std::size_t c = 0; c < table.integrated().size(); ++c)
+    if (const auto weight = table.weight_of(c)) {
+      const auto column = jet.columns().column(c);
+      const auto& w = jet.carried(*weight);
+      column[k + 1] = (w[k] * column[k] + w[k + 1] * column[k + 1]) / (w[k] + w[k + 1]);
+    }
+  for (std::size_t c = 0; c < table.carried().size(); ++c)
+    if (table.carried()[c].remap == ColumnRemap::share)
+      jet.carried(c)[k + 1] += jet.carried(c)[k];
 }
 
 void remove_beads(JetState& jet, const std::vector<bool>& gone) {
-  const std::size_t beads = jet.beads(), columns = jet.y.size() / beads;
+  const std::size_t beads = jet.beads(), columns = jet.table->integrated().size();
   std::vector<std::size_t> place(beads); // of each bead among those that stay
   std::size_t stay = 0;
   for (std::size_t k = 0; k < beads; ++k) {
@@ -37,9 +35,9 @@ void remove_beads(JetState& jet, const std::vector<bool>& gone) {
   for (std::size_t c = 0; c < columns; ++c)
     close_up(jet.y.data() + c * beads, jet.y.data() + c * stay);
   jet.y.resize(columns * stay);
-  for (auto* column : {&jet.mass, &jet.charge, &jet.volume}) {
-    close_up(column->data(), column->data());
-    column->resize(stay);
+  for (std::size_t c = 0; c < jet.table->carried().size(); ++c) {
+    close_up(jet.carried(c).data(), jet.carried(c).data());
+    jet.carried(c).resize(stay);
   }
   for (LandedBead& b : jet.landed) b.bead = place[b.bead];
 }

@@ -29,22 +29,18 @@ Values cumulative(std::span<const double> values) { // from 0 on
   return sums;
 }
 
+constexpr std::size_t volume_column = 0; // of the carried ones
+
 // A jet whose beads 0 ... s are those of another one and whose others are still to be filled in.
 JetState with_room(const JetState& old, std::size_t s, std::size_t beads) {
-  JetState jet;
+  JetState jet = blank_jet(old.table, beads);
   jet.time = old.time, jet.has_embryo = old.has_embryo;
   jet.absorbing_plane = old.absorbing_plane;
-  const std::size_t columns = old.y.size() / old.beads();
-  jet.y.resize(columns * beads);
-  for (std::size_t c = 0; c < columns; ++c)
-    std::copy_n(old.y.begin() + static_cast<std::ptrdiff_t>(c * old.beads()), s + 1,
-                jet.y.begin() + static_cast<std::ptrdiff_t>(c * beads));
-  for (const auto column : {&JetState::mass, &JetState::charge, &JetState::volume}) {
-    (jet.*column)
-        .assign((old.*column).begin(),
-                (old.*column).begin() + static_cast<std::ptrdiff_t>(s + 1));
-    (jet.*column).resize(beads);
-  }
+  for (std::size_t c = 0; c < old.table->integrated().size(); ++c)
+    std::ranges::copy(old.columns().column(c).first(s + 1),
+                      jet.columns().column(c).begin());
+  for (std::size_t c = 0; c < old.table->carried().size(); ++c)
+    std::copy_n(old.carried(c).begin(), s + 1, jet.carried(c).begin());
   for (const LandedBead& b : old.landed) {
     if (b.bead <= s) jet.landed.push_back(b);
     if (b.bead == old.links())
@@ -67,10 +63,10 @@ public:
       , spline_(string.arc_length) {}
 
   JetState run() {
-    const std::size_t columns = old_.y.size() / old_.beads();
-    for (std::size_t c = 0; c < columns; ++c) {
+    const auto integrated = old_.table->integrated(), carried = old_.table->carried();
+    for (std::size_t c = 0; c < integrated.size(); ++c) {
       Values values = string_.at_knots(old_.columns().column(c));
-      if (c >= JetColumns<double>::kinematic_columns) values[0] = values[1]; // no link
+      if (integrated[c].owner == Owner::link) values[0] = values[1]; // bead 0 owns none
       spline_.interpolate(values, mesh_.arc_length, fresh(jet_.columns().column(c)));
     }
     keep_end();
@@ -80,14 +76,16 @@ public:
       remap_radius();
     } else {
       const Remap remap = behind_kept();
-      for (const auto column : {&JetState::volume, &JetState::mass, &JetState::charge})
-        std::ranges::copy(remap(behind_s(old_.*column)), fresh(jet_.*column).begin());
+      for (std::size_t c = 0; c < carried.size(); ++c)
+        if (carried[c].remap == ColumnRemap::share)
+          std::ranges::copy(remap(behind_s(old_.carried(c))),
+                            fresh(jet_.carried(c)).begin());
     }
-    if (rule_.velocity == ColumnRemap::conservative)
-      for (std::size_t c = 3; c < JetColumns<double>::kinematic_columns; ++c)
-        average(c, &JetState::mass);
-    if (rule_.stress == ColumnRemap::conservative && old_.columns().has_stress())
-      average(JetColumns<double>::kinematic_columns, &JetState::volume);
+    for (std::size_t c = 0; c < carried.size(); ++c)
+      if (carried[c].remap == ColumnRemap::label) inherit(c);
+    for (std::size_t c = 0; c < integrated.size(); ++c)
+      if (integrated[c].remap == ColumnRemap::conservative)
+        average(c, *old_.table->weight_of(c));
     keep_landed_record();
     return std::move(jet_);
   }
@@ -110,26 +108,38 @@ private:
 
   // The leading bead stays where it is, to the last bit; no other one lies beyond the collector.
   void keep_end() {
-    const std::size_t columns = old_.y.size() / old_.beads();
-    for (std::size_t c = 0; c < columns; ++c)
-      jet_.columns().column(c).back() = old_.columns().column(c).back();
+    restore_end(0);
     if (!rule_.collector) return;
     for (double& x : fresh(jet_.columns().position().x)) x = std::min(x, *rule_.collector);
   }
-  // A bead that rests keeps the velocity and stress of its landing, however they are remapped.
+  // A bead that rests keeps what it had at its landing, however the columns are remapped.
   void keep_landed_record() {
-    if (!jet_.is_landed(jet_.links())) return;
-    const std::size_t columns = old_.y.size() / old_.beads();
-    for (std::size_t c = 3; c < columns; ++c)
+    if (jet_.is_landed(jet_.links())) restore_end(3); // no remap moves it
+  }
+  void restore_end(std::size_t first_column) {
+    for (std::size_t c = first_column; c < old_.table->integrated().size(); ++c)
       jet_.columns().column(c).back() = old_.columns().column(c).back();
+  }
+
+  // A new link has the value of the old link in which its middle lies.
+  void inherit(std::size_t carried) {
+    std::size_t i = mesh_.kept + 1;
+    double before = string_.arc_length[mesh_.kept];
+    const auto label = fresh(jet_.carried(carried));
+    for (std::size_t j = 0; j < mesh_.arc_length.size(); ++j) {
+      const double middle = (before + mesh_.arc_length[j]) / 2;
+      while (i + 1 < string_.knots() && string_.arc_length[i] < middle) ++i;
+      label[j] = old_.carried(carried)[string_.bead(i)];
+      before = mesh_.arc_length[j];
+    }
   }
 
   // A column as the average of itself weighted with what the links carry: shared out along the
   // carried quantity, so that the sum of the product is kept however that was remapped.
-  void average(std::size_t c, std::vector<double> JetState::*carried) {
+  void average(std::size_t c, std::size_t carried) {
     const auto column = behind_s(old_.columns().column(c));
-    const auto weight = behind_s(old_.*carried);
-    const auto new_weight = fresh(jet_.*carried);
+    const auto weight = behind_s(old_.carried(carried));
+    const auto new_weight = fresh(jet_.carried(carried));
     Values product(column.size());
     std::ranges::transform(column, weight, product.begin(), std::multiplies{});
     Values from = cumulative(weight), to = cumulative(new_weight);
@@ -161,9 +171,11 @@ private:
     const double old_volume = sum(behind_s(old_.volume));
     const double factor = old_volume / sum(volume);
     for (double& v : volume) v *= factor;
-    for (const auto column : {&JetState::mass, &JetState::charge}) {
-      const double density = sum(behind_s(old_.*column)) / old_volume;
-      std::ranges::transform(volume, fresh(jet_.*column).begin(),
+    const auto carried = old_.table->carried();
+    for (std::size_t c = 0; c < carried.size(); ++c) {
+      if (c == volume_column || carried[c].remap != ColumnRemap::share) continue;
+      const double density = sum(behind_s(old_.carried(c))) / old_volume;
+      std::ranges::transform(volume, fresh(jet_.carried(c)).begin(),
                              [density](double v) { return density * v; });
     }
   }

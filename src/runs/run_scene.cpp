@@ -63,8 +63,8 @@ void add_records(Simulation& simulation, const std::shared_ptr<RunFile>& file,
     simulation.add(record_observables(file, *output.observables,
                                       config.coulomb && config.coulomb->check_every));
   if (output.frames)
-    simulation.add(record_frames(file, *output.frames, simulation.dynamics().has_stress()));
-  if (output.deposit) simulation.add(record_deposit(file));
+    simulation.add(record_frames(file, *output.frames, *simulation.jet().table));
+  if (output.deposit) simulation.add(record_deposit(file, simulation.jet().table));
   if (output.refinements != RefinementRecords::none)
     simulation.add(
         record_refinements(file, output.refinements == RefinementRecords::energies));

@@ -1,8 +1,8 @@
 #include "ehdjet/core/csv_table.hpp"
 #include "ehdjet/core/error.hpp"
 
-#include <array>
 #include <fmt/format.h>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -11,28 +11,14 @@
 namespace ehdjet {
 namespace {
 
-constexpr std::size_t columns = chain_columns.size();
-
-std::vector<std::string_view> columns_that_are(bool required) {
-  std::vector<std::string_view> names;
-  for (const ChainColumn& c : chain_columns)
-    if (c.csv_required == required) names.emplace_back(c.csv);
+std::vector<std::string> columns_that_are(bool required) {
+  std::vector<std::string> names;
+  for (const ChainColumn& c : chain_columns())
+    if (c.csv_required == required) names.push_back(c.csv);
   return names;
 }
 
-// CsvTable knows columns by their place in the list of required, then optional ones.
-std::array<const ChainColumn*, columns> in_table_order() {
-  std::array<const ChainColumn*, columns> order{};
-  std::size_t i = 0;
-  for (const bool required : {true, false})
-    for (const ChainColumn& c : chain_columns)
-      if (c.csv_required == required) order[i++] = &c;
-  return order;
-}
-
-constexpr std::size_t bead_column = columns, embryo_column = columns + 1;
-
-void check_order(const CsvTable& table, std::size_t expected) {
+void check_order(const CsvTable& table, std::size_t bead_column, std::size_t expected) {
   const double bead = table.value(bead_column);
   if (bead == static_cast<double>(expected)) return;
   table.refuse(
@@ -43,35 +29,54 @@ void check_order(const CsvTable& table, std::size_t expected) {
                         expected - 1));
 }
 
+// Text in a column that nobody may want is no reason to refuse the file.
+void read_other(const CsvTable& table, std::size_t column, ChainBeads::Other& other) {
+  if (!other.fault.empty()) return;
+  try {
+    other.values.push_back(table.value(column));
+  } catch (const InputError& e) {
+    other.fault = e.what();
+  }
+}
+
 } // namespace
 
 ChainBeads read_chain_csv(const std::filesystem::path& file) {
   auto optional = columns_that_are(false);
-  optional.emplace_back("bead");
-  optional.emplace_back("embryo");
-  CsvTable table(file, columns_that_are(true), optional);
-  const auto order = in_table_order();
+  optional.emplace_back("bead"), optional.emplace_back("embryo");
+  CsvTable table(file, columns_that_are(true), optional, true);
+  const std::size_t columns = chain_columns().size();
+  const std::size_t bead_column = columns, embryo_column = columns + 1;
+  // CsvTable knows columns by their place in the list of required, then optional ones.
+  std::vector<const ChainColumn*> order;
+  for (const bool required : {true, false})
+    for (const ChainColumn& c : chain_columns())
+      if (c.csv_required == required) order.push_back(&c);
 
   struct Row {
     std::size_t line = 0;
-    std::array<std::size_t, columns> start{}; // where its fields start, in table order
+    std::vector<std::size_t> start{}; // where its fields start, in table order
   };
   std::vector<Row> rows;
   ChainBeads beads;
+  for (std::size_t c = columns + 2; c < table.columns().size(); ++c)
+    beads.others[table.columns()[c]] = {};
   while (table.next_row()) {
-    Row row{.line = table.line(), .start = {}};
+    Row row{.line = table.line()};
     for (std::size_t c = 0; c < columns; ++c) {
       (beads.*order[c]->values).push_back(table.value(c));
-      row.start[c] = table.start(c);
+      row.start.push_back(table.start(c));
     }
-    if (table.has(bead_column)) check_order(table, rows.size());
+    for (std::size_t c = columns + 2; c < table.columns().size(); ++c)
+      read_other(table, c, beads.others[table.columns()[c]]);
+    if (table.has(bead_column)) check_order(table, bead_column, rows.size());
     if (table.value(embryo_column) != 0)
       table.refuse(table.start(embryo_column),
                    "embryo = 1: a chain has no embryo, remove this line");
     rows.push_back(row);
   }
 
-  check_chain(beads, [&](std::size_t bead, const char* column) {
+  check_chain(beads, [&](std::size_t bead, std::string_view column) {
     if (rows.empty()) return fmt::format("{}:{}", file.string(), table.line());
     const Row& row = rows[bead];
     for (std::size_t c = 0; c < columns; ++c)

@@ -1,7 +1,9 @@
 #include "ehdjet/scene/chain_file.hpp"
 
+#include "ehdjet/core/csv_table.hpp"
 #include "ehdjet/core/error.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cmath>
@@ -23,6 +25,41 @@ bool is_hdf5(std::ifstream& in) {
 
 } // namespace
 
+const std::vector<ChainColumn>& chain_columns() {
+  static const auto all = [] {
+    constexpr std::array members{
+        &ChainBeads::x,      &ChainBeads::y,    &ChainBeads::z,
+        &ChainBeads::vx,     &ChainBeads::vy,   &ChainBeads::vz,
+        &ChainBeads::volume, &ChainBeads::mass, &ChainBeads::charge};
+    std::vector<ChainColumn> list;
+    const auto table = BeadTable::basic();
+    for (const auto columns : {table->integrated(), table->carried()})
+      for (const BeadColumn& c : columns)
+        list.push_back({.csv = csv_name(c.name, c.unit),
+                        .hdf5 = c.name,
+                        .values = members[list.size()],
+                        .csv_required = c.unit != "m/s"});
+    return list;
+  }();
+  return all;
+}
+
+void ChainBeads::copy_to(const BeadColumn& column, std::span<double> out) const {
+  const std::vector<double>* values = nullptr;
+  const auto& given = chain_columns();
+  const auto basic = std::ranges::find(given, column.name, &ChainColumn::hdf5);
+  if (basic != given.end()) {
+    values = &(this->*basic->values);
+  } else if (const auto other = others.find(csv_name(column.name, column.unit));
+             other != others.end()) {
+    if (!other->second.fault.empty()) throw InputError(other->second.fault);
+    values = &other->second.values;
+  }
+  EHDJET_EXPECTS(values == nullptr || values->size() == out.size());
+  std::ranges::fill(out, 0.0);
+  if (values != nullptr) std::ranges::copy(*values, out.begin());
+}
+
 ChainBeads read_chain(const std::filesystem::path& file, std::optional<double> time) {
   std::ifstream in(file, std::ios::binary);
   if (!in || std::filesystem::is_directory(file))
@@ -39,16 +76,17 @@ ChainBeads read_chain(const std::filesystem::path& file, std::optional<double> t
 
 void check_chain(
     const ChainBeads& beads,
-    const std::function<std::string(std::size_t bead, const char* column)>& where) {
-  const auto refuse = [&](std::size_t bead, const char* column, const std::string& why) {
+    const std::function<std::string(std::size_t bead, std::string_view column)>& where) {
+  const auto refuse = [&](std::size_t bead, std::string_view column,
+                          const std::string& why) {
     throw InputError(fmt::format("{}: {}", where(bead, column), why));
   };
   const std::size_t n = beads.size();
   if (n < 2)
-    refuse(n == 0 ? 0 : n - 1, nullptr,
+    refuse(n == 0 ? 0 : n - 1, "",
            fmt::format("a chain of {} bead(s): needs at least 2", n));
   for (std::size_t i = 0; i < n; ++i) {
-    for (const auto& column : chain_columns)
+    for (const auto& column : chain_columns())
       if (const double value = (beads.*column.values)[i]; !std::isfinite(value))
         refuse(i, column.csv, fmt::format("{} = {}: must be finite", column.csv, value));
     if (!(beads.mass[i] > 0))
@@ -62,7 +100,7 @@ void check_chain(
         && !(std::hypot(beads.x[i] - beads.x[i - 1], beads.y[i] - beads.y[i - 1],
                         beads.z[i] - beads.z[i - 1])
              > 0))
-      refuse(i, nullptr,
+      refuse(i, "",
              fmt::format("bead {} is in the same place as bead {}: a link must have a "
                          "length",
                          i, i - 1));

@@ -39,8 +39,6 @@ RefinementRule refinement_rule(const SceneConfig& c) {
   const RefinementConfig& r = *c.refinement;
   RefinementRule rule{.length = r.length,
                       .remap = r.remap,
-                      .velocity = r.velocity,
-                      .stress = r.stress,
                       .coarsen = r.coarsen,
                       .collector = {},
                       .has_nozzle = c.nozzle.has_value()};
@@ -84,10 +82,10 @@ bool carries_stress(const SceneConfig& c) {
 /// l_step, or the shortest link of a given chain [m].
 double shortest_link_at_start(const Scene& scene) {
   if (scene.config.nozzle) return scene.config.nozzle->link_length;
-  const JetState jet = initial_jet(scene);
-  double length = link_length(jet, 1);
-  for (std::size_t k = 2; k < jet.beads(); ++k)
-    length = std::min(length, link_length(jet, k));
+  const ConstVec3View r{scene.chain.x, scene.chain.y, scene.chain.z};
+  double length = (r[1] - r[0]).norm();
+  for (std::size_t k = 2; k < r.size(); ++k)
+    length = std::min(length, (r[k] - r[k - 1]).norm());
   return length;
 }
 
@@ -99,36 +97,55 @@ double shortest_link(const Scene& scene) {
   return vanished * shortest_link_at_start(scene);
 }
 
-ErrorScale error_scale(const Scene& scene) {
-  const SceneConfig& c = scene.config;
-  const double length = c.integrator.position_scale.value_or(shortest_link_at_start(scene));
-  const double speed = c.integrator.velocity_scale;
-  ErrorScale scale{.rtol = c.integrator.rtol.value_or(1),
-                   .column_scale = {length, length, length, speed, speed, speed},
-                   .root_mean_square = c.integrator.norm == ErrorNorm::rms};
-  if (carries_stress(c))
-    scale.column_scale.push_back(
-        c.integrator.stress_scale.value_or(0.1 * c.viscoelasticity->elastic_modulus));
-  return scale;
-}
-
-JetState chain_jet(const ChainBeads& beads, bool with_stress) {
-  JetState jet;
-  for (const auto* column : {&beads.x, &beads.y, &beads.z, &beads.vx, &beads.vy, &beads.vz})
-    jet.y.insert(jet.y.end(), column->begin(), column->end());
-  if (with_stress) jet.y.insert(jet.y.end(), beads.stress.begin(), beads.stress.end());
-  jet.mass = beads.mass, jet.charge = beads.charge, jet.volume = beads.volume;
+JetState chain_jet(const ChainBeads& beads, std::shared_ptr<const BeadTable> table) {
+  JetState jet = blank_jet(std::move(table), beads.size());
+  for (std::size_t c = 0; c < jet.table->integrated().size(); ++c)
+    beads.copy_to(jet.table->integrated()[c], jet.columns().column(c));
+  for (std::size_t c = 0; c < jet.table->carried().size(); ++c)
+    beads.copy_to(jet.table->carried()[c], jet.carried(c));
   return jet;
 }
 
 } // namespace
 
-JetState initial_jet(const Scene& scene) {
-  const bool with_stress = carries_stress(scene.config);
-  constexpr std::size_t kinematic = JetColumns<double>::kinematic_columns;
+std::shared_ptr<const BeadTable> bead_table(const Scene& scene,
+                                            const JetDynamics& dynamics) {
+  const SceneConfig& c = scene.config;
+  auto table = std::make_shared<BeadTable>();
+  for (const auto& term : dynamics.terms())
+    for (BeadColumn& column : term->columns()) table->declare(std::move(column));
+  const double length = c.integrator.position_scale.value_or(shortest_link_at_start(scene));
+  for (const char* name : {"x", "y", "z"}) table->set_error_scale(name, length);
+  for (const char* name : {"vx", "vy", "vz"}) {
+    table->set_error_scale(name, c.integrator.velocity_scale);
+    if (c.refinement) table->set_remap(name, c.refinement->velocity);
+  }
+  if (carries_stress(c)) {
+    if (c.integrator.stress_scale)
+      table->set_error_scale("stress", *c.integrator.stress_scale);
+    if (c.refinement) table->set_remap("stress", c.refinement->stress);
+  }
+  return table;
+}
+
+ErrorScale error_scale(const Scene& scene, const BeadTable& table) {
+  const IntegratorConfig& c = scene.config.integrator;
+  ErrorScale scale{.rtol = c.rtol.value_or(1),
+                   .column_scale = {},
+                   .root_mean_square = c.norm == ErrorNorm::rms};
+  for (const BeadColumn& column : table.integrated())
+    scale.column_scale.push_back(column.error_scale);
+  return scale;
+}
+
+JetState initial_jet(const Scene& scene, std::shared_ptr<const BeadTable> table) {
   if (const auto inflow = build_inflow(scene.config))
-    return inflow->start(with_stress ? kinematic + 1 : kinematic);
-  return chain_jet(scene.chain, with_stress);
+    return inflow->start(std::move(table));
+  return chain_jet(scene.chain, std::move(table));
+}
+
+JetState initial_jet(const Scene& scene) {
+  return initial_jet(scene, bead_table(scene, *build_dynamics(scene)));
 }
 
 SolverOptions solver_options(const CoulombConfig& c,
@@ -166,8 +183,8 @@ std::unique_ptr<JetDynamics> compose_dynamics(const Scene& scene,
   if (c.surface_tension && c.surface_tension->form == SurfaceTensionForm::line)
     dynamics->add(std::make_unique<LineSurfaceTension>(c.surface_tension->coefficient));
   if (carries_stress(c))
-    dynamics->set_rheology(std::make_unique<Maxwell>(c.viscoelasticity->elastic_modulus,
-                                                     c.viscoelasticity->viscosity));
+    dynamics->add(std::make_unique<Maxwell>(c.viscoelasticity->elastic_modulus,
+                                            c.viscoelasticity->viscosity));
   return dynamics;
 }
 
@@ -179,17 +196,18 @@ std::unique_ptr<JetDynamics> build_dynamics(const Scene& scene) {
 
 std::unique_ptr<Simulation> build_simulation(const Scene& scene, Extras extras) {
   const SceneConfig& c = scene.config;
-  auto integrator = make_integrator(c.integrator.method, error_scale(scene));
+  const std::shared_ptr<const InflowRule> inflow = build_inflow(c);
+  auto dynamics = compose_dynamics(scene, inflow);
+  for (auto& force : extras.forces) dynamics->add(std::move(force));
+  const auto table = bead_table(scene, *dynamics);
+  auto integrator = make_integrator(c.integrator.method, error_scale(scene, *table));
   StepLimits limits{.fixed = c.integrator.step,
                     .initial = c.integrator.initial_step,
                     .longest = c.integrator.max_step.value_or(StepLimits{}.longest),
                     .shortest = c.integrator.min_step,
                     .shortest_link = shortest_link(scene)};
-  const std::shared_ptr<const InflowRule> inflow = build_inflow(c);
-  auto dynamics = compose_dynamics(scene, inflow);
-  for (auto& force : extras.forces) dynamics->add(std::move(force));
-  auto simulation = std::make_unique<Simulation>(initial_jet(scene), std::move(dynamics),
-                                                 std::move(integrator), limits);
+  auto simulation = std::make_unique<Simulation>(
+      initial_jet(scene, table), std::move(dynamics), std::move(integrator), limits);
   if (c.integrator.events == EventPlacement::step_end)
     simulation->snap_events_to_step_ends();
 

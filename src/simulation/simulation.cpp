@@ -3,7 +3,6 @@
 #include "ehdjet/core/error.hpp"
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cmath>
 #include <fmt/format.h>
@@ -208,10 +207,9 @@ void Simulation::make_checkpoint() {
 }
 
 void Simulation::restore(const Checkpoint& checkpoint) {
-  const std::size_t columns = jet_.y.size() / jet_.beads(), events = events_.size();
+  const std::size_t events = events_.size();
   archive(Archive::from(checkpoint));
-  if (jet_.y.size() != columns * jet_.beads() || restart_step_.size() != events
-      || (after_event_ && *after_event_ >= events))
+  if (restart_step_.size() != events || (after_event_ && *after_event_ >= events))
     throw InputError("the checkpoint is of another scene");
   if (statistics_.method) statistics_.method->in_use = integrator_->method_in_use();
   restored_at_ = jet_.time;
@@ -420,8 +418,6 @@ void Simulation::apply(Event& event, EventContext& context) {
 }
 
 void Simulation::fail(double h, const char* why) {
-  static constexpr std::array<std::string_view, 7> columns{"x",  "y",  "z",     "vx",
-                                                           "vy", "vz", "stress"};
   const std::size_t worst = integrator_->worst_component();
   FirstNan search(*dynamics_, jet_.beads());
   integrator_->restart();
@@ -435,7 +431,8 @@ void Simulation::fail(double h, const char* why) {
       "fast; {}. If the motion is as it should be there, a larger integrator.rtol or a "
       "smaller "
       "integrator.min_step may get past it",
-      why, jet_.time, h, columns[worst / jet_.beads()], worst % jet_.beads(), cause));
+      why, jet_.time, h, jet_.table->integrated()[worst / jet_.beads()].name,
+      worst % jet_.beads(), cause));
 }
 
 } // namespace ehdjet

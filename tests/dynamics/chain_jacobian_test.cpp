@@ -12,6 +12,8 @@
 #include <utility>
 #include <vector>
 
+#include "support/stress.hpp"
+
 namespace ehdjet {
 namespace {
 
@@ -22,6 +24,7 @@ struct BentJet {
   explicit BentJet(std::size_t n, bool stress = true) {
     std::mt19937 random(7);
     std::uniform_real_distribution<double> u(0.5, 1.5);
+    if (stress) jet.table = test::table_with_stress();
     jet.y.assign((stress ? 7 : 6) * n, 0.0);
     for (auto* column : {&jet.mass, &jet.charge, &jet.volume})
       for (std::size_t k = 0; k < n; ++k) column->push_back(u(random));
@@ -29,7 +32,7 @@ struct BentJet {
     for (std::size_t k = 0; k < n; ++k) {
       c.position().set(k, {static_cast<double>(k) * u(random), 0.4 * u(random), u(random)});
       c.velocity().set(k, {u(random), -u(random), 2 * u(random)});
-      if (stress) c.stress()[k] = 0.3 * u(random);
+      if (stress) test::stress_of(c)[k] = 0.3 * u(random);
     }
   }
   JetState jet;
@@ -43,7 +46,7 @@ std::vector<bool> moving_entries(const JetState& jet, const Held& held) {
   std::vector<bool> moves(jet.y.size(), true);
   for (const std::size_t k : held.beads)
     for (std::size_t c = 0; c < 6; ++c) moves[c * jet.beads() + k] = false;
-  if (jet.columns().has_stress())
+  if (test::has_stress(jet.columns()))
     for (const std::size_t k : held.links) moves[6 * jet.beads() + k] = false;
   return moves;
 }
@@ -151,7 +154,7 @@ private:
 TEST(ChainJacobian, has_damping_and_drag) {
   for (const bool with_stress : {false, true}) {
     JetDynamics dynamics;
-    if (with_stress) dynamics.set_rheology(std::make_unique<Maxwell>(3, 2));
+    if (with_stress) dynamics.add(std::make_unique<Maxwell>(3, 2));
     dynamics.add(std::make_unique<Dashpots>(0.9, 0.4));
     expect_same(dynamics, BentJet(6, with_stress).jet, {});
     dynamics.hold({.first = true, .last = true});
@@ -164,7 +167,7 @@ TEST(ChainJacobian, has_damping_and_drag) {
 TEST(ChainJacobian, is_what_the_local_forces_answer) {
   for (const std::size_t n : {2U, 3U, 7U}) {
     JetDynamics dynamics;
-    dynamics.set_rheology(std::make_unique<Maxwell>(3, 2));
+    dynamics.add(std::make_unique<Maxwell>(3, 2));
     dynamics.add(std::make_unique<LineSurfaceTension>(0.8));
     expect_same(dynamics, BentJet(n).jet, {});
   }
@@ -172,9 +175,9 @@ TEST(ChainJacobian, is_what_the_local_forces_answer) {
 
 TEST(ChainJacobian, allows_for_compression) {
   JetDynamics dynamics;
-  dynamics.set_rheology(std::make_unique<Maxwell>(3, 2));
+  dynamics.add(std::make_unique<Maxwell>(3, 2));
   BentJet bent(7);
-  for (double& sigma : bent.jet.columns().stress()) sigma *= -1;
+  for (double& sigma : test::stress_of(bent.jet.columns())) sigma *= -1;
   expect_same(dynamics, bent.jet, {});
 }
 
@@ -187,7 +190,7 @@ TEST(ChainJacobian, does_without_stress) {
 TEST(ChainJacobian, leaves_held_beads_alone) {
   for (const HeldEnds ends : {HeldEnds{true, false}, {false, true}, {true, true}}) {
     JetDynamics dynamics;
-    dynamics.set_rheology(std::make_unique<Maxwell>(3, 2));
+    dynamics.add(std::make_unique<Maxwell>(3, 2));
     dynamics.hold(ends);
     Held held;
     if (ends.first) held = {{0}, {0}};
@@ -199,7 +202,7 @@ TEST(ChainJacobian, leaves_held_beads_alone) {
 // The bead after an embryo hangs on bead 0; a landed bead rests whatever its velocity on record.
 TEST(ChainJacobian, knows_embryos_and_landed_beads) {
   JetDynamics dynamics;
-  dynamics.set_rheology(std::make_unique<Maxwell>(3, 2));
+  dynamics.add(std::make_unique<Maxwell>(3, 2));
   dynamics.add(std::make_unique<LineSurfaceTension>(0.8));
   dynamics.set_inflow(turning_inflow());
   BentJet bent(8);
@@ -227,7 +230,7 @@ TEST(ChainJacobian, takes_the_papers_surface_tension_as_on_a_straight_chain) {
 TEST(ChainJacobian, knows_how_the_nozzle_moves) {
   for (const bool embryo : {false, true}) {
     JetDynamics dynamics;
-    dynamics.set_rheology(std::make_unique<Maxwell>(3, 2));
+    dynamics.add(std::make_unique<Maxwell>(3, 2));
     dynamics.add(std::make_unique<LineSurfaceTension>(0.8));
     dynamics.add(std::make_unique<Dashpots>(0.9, 0.4));
     dynamics.set_inflow(turning_inflow());
@@ -260,7 +263,7 @@ TEST(ChainJacobian, solves_without_overflow) {
     for (const double eta : {1e-15, 1e-6, 1.0, 1e6}) {
       if (eta * modulus / (1 + eta * modulus / viscosity) * eta > 1e14) continue;
       JetDynamics dynamics;
-      dynamics.set_rheology(std::make_unique<Maxwell>(modulus, viscosity));
+      dynamics.add(std::make_unique<Maxwell>(modulus, viscosity));
       const BentJet bent(6);
       dynamics.bind(bent.jet);
       dynamics.stiff_part()->linearize(0, bent.jet.y);
@@ -275,12 +278,13 @@ TEST(ChainJacobian, rates_are_those_of_a_uniform_chain) {
   constexpr std::size_t n = 9;
   const double l = 0.2, volume = 0.01, mass = 0.03, modulus = 5, viscosity = 100;
   JetState jet;
+  jet.table = test::table_with_stress();
   jet.y.assign(7 * n, 0.0);
   jet.mass.assign(n, mass), jet.volume.assign(n, volume), jet.charge.assign(n, 0.0);
   for (std::size_t k = 0; k < n; ++k)
     jet.columns().position().set(k, {l * static_cast<double>(k), 0, 0});
   JetDynamics dynamics;
-  dynamics.set_rheology(std::make_unique<Maxwell>(modulus, viscosity));
+  dynamics.add(std::make_unique<Maxwell>(modulus, viscosity));
   dynamics.bind(jet);
   dynamics.stiff_part()->linearize(0, jet.y);
   const auto modes = dynamics.stiff_part()->fastest_modes();

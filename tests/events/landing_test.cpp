@@ -189,11 +189,11 @@ TEST(Landing, the_link_below_a_landed_interior_bead_sees_it_at_rest) {
   };
   const double l0 = length({h - 0.002, 3e-3, -1.5e-3}, {h - 0.01, 4e-3, -2e-3});
   const double l1 = length(jet.columns().position()[3], jet.columns().position()[4]);
-  EXPECT_NEAR(jet.columns().stress()[4] / (1e-6 * std::log(l1 / l0)), 1, 1e-7);
+  EXPECT_NEAR(stress_of(jet.columns())[4] / (1e-6 * std::log(l1 / l0)), 1, 1e-7);
   // Its own link keeps the stress of the landing.
   const double own0 = length({0.12, 2e-3, -1e-3}, {h - 0.002, 3e-3, -1.5e-3});
   const double own1 = length({0.1216, 2.8e-3, -1e-3}, {h, 4.2e-3, -1.5e-3});
-  EXPECT_NEAR(jet.columns().stress()[3] / (1e-6 * std::log(own1 / own0)), 1, 1e-7);
+  EXPECT_NEAR(stress_of(jet.columns())[3] / (1e-6 * std::log(own1 / own0)), 1, 1e-7);
 }
 
 } // namespace

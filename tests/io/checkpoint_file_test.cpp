@@ -32,7 +32,7 @@ TEST(CheckpointFile, flushes_what_was_written_before) {
   const ScratchFolder folder;
   const auto file =
       std::make_shared<RunFile>(folder / "run.h5", false, fabricated_provenance(), 1e9);
-  const auto frames = record_frames(file, 1e-5, true);
+  const auto frames = record_frames(file, 1e-5, *test::table_with_stress());
   frames->observe(fabricated_jet(0).snapshot());
   EXPECT_EQ(RunReader(folder / "run.h5").frame_times().size(), 0U);
   file->keep(fabricated_checkpoint(0));

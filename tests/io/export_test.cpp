@@ -128,10 +128,21 @@ TEST_F(Export, deposit_has_the_documented_columns_and_keeps_every_bit) {
     const DepositedBead d = fabricated_deposit(k);
     const Vec3 &r = d.bead.position, &v = d.bead.velocity;
     arc_length += d.bead.volume / (std::numbers::pi * d.radius * d.radius);
-    const std::vector<double> expected = {
-        d.time,   d.removal_time, r.x(),         r.y(),         r.z(),
-        v.x(),    v.y(),          v.z(),         d.bead.stress, d.landing_radius,
-        d.radius, d.bead.mass,    d.bead.charge, d.bead.volume, arc_length};
+    const std::vector<double> expected = {d.time,
+                                          d.removal_time,
+                                          r.x(),
+                                          r.y(),
+                                          r.z(),
+                                          v.x(),
+                                          v.y(),
+                                          v.z(),
+                                          test::stress_of(d.bead),
+                                          d.landing_radius,
+                                          d.radius,
+                                          d.bead.mass,
+                                          d.bead.charge,
+                                          d.bead.volume,
+                                          arc_length};
     EXPECT_EQ(rows[k], expected);
   }
 }

@@ -17,6 +17,7 @@ FabricatedJet fabricated_jet(std::uint64_t k, bool with_stress) {
     jet.charge.push_back(1e-12 * number(bits));
     jet.volume.push_back(1e-13 * number(bits));
   }
+  if (with_stress) jet.table = test::table_with_stress();
   jet.y.assign((with_stress ? 7 : 6) * beads, -1e300);
   for (std::size_t i = 0; i < jet.y.size(); ++i) made.values.push_back(number(bits) - 0.5);
   jet.has_embryo = beads > 2 && k % 3 == 1;
@@ -51,7 +52,7 @@ DepositedBead fabricated_deposit(std::uint64_t k) {
   made.time = number(bits), made.removal_time = number(bits);
   made.bead.position = {number(bits), number(bits), number(bits)};
   made.bead.velocity = {number(bits), number(bits), number(bits)};
-  made.bead.stress = number(bits), made.bead.volume = number(bits);
+  made.bead.declared = {number(bits)}, made.bead.volume = number(bits);
   made.bead.mass = number(bits), made.bead.charge = number(bits);
   made.landing_radius = number(bits), made.radius = number(bits);
   return made;
@@ -59,8 +60,10 @@ DepositedBead fabricated_deposit(std::uint64_t k) {
 
 void write_run(const std::filesystem::path& path, std::size_t frames, bool with_stress) {
   const auto file = std::make_shared<RunFile>(path, false, fabricated_provenance(), 1e9);
-  const auto observables = record_observables(file, 1e-5), deposit = record_deposit(file);
-  const auto shown = record_frames(file, 1e-5, with_stress);
+  const auto observables = record_observables(file, 1e-5),
+             deposit = record_deposit(file, test::table_with_stress());
+  const auto shown = record_frames(
+      file, 1e-5, with_stress ? *test::table_with_stress() : *BeadTable::basic());
   FabricatedJet jet;
   for (std::size_t k = 0; k < frames; ++k) {
     jet = fabricated_jet(k, with_stress);

@@ -16,6 +16,8 @@
 #include <unistd.h>
 #include <vector>
 
+#include "support/stress.hpp"
+
 namespace ehdjet::testing {
 
 /// An empty folder that goes away with the test.

@@ -25,7 +25,8 @@ TEST(PlotPage, shows_the_parts_that_there_are) {
   {
     const auto file =
         std::make_shared<RunFile>(folder / "frames.h5", false, Provenance{}, 1);
-    record_frames(file, 1, true)->observe(fabricated_jet(7).snapshot());
+    record_frames(file, 1, *test::table_with_stress())
+        ->observe(fabricated_jet(7).snapshot());
   }
   {
     const auto file =

@@ -31,8 +31,8 @@ void expect_same(const Frame& read, const FabricatedJet& made) {
   EXPECT_EQ(read["vx"], as_vector(columns.velocity().x));
   EXPECT_EQ(read["vy"], as_vector(columns.velocity().y));
   EXPECT_EQ(read["vz"], as_vector(columns.velocity().z));
-  if (columns.has_stress()) {
-    EXPECT_EQ(read["stress"], as_vector(columns.stress()));
+  if (test::has_stress(columns)) {
+    EXPECT_EQ(read["stress"], as_vector(test::stress_of(columns)));
   }
   EXPECT_EQ(read["volume"], made.jet.volume);
   EXPECT_EQ(read["mass"], made.jet.mass);
@@ -77,7 +77,7 @@ TEST(RunFile, what_was_written_is_read_back_bit_for_bit) {
     EXPECT_EQ(Vec3(deposit["x"][k], deposit["y"][k], deposit["z"][k]), made.bead.position);
     EXPECT_EQ(Vec3(deposit["vx"][k], deposit["vy"][k], deposit["vz"][k]),
               made.bead.velocity);
-    EXPECT_EQ(deposit["stress"][k], made.bead.stress);
+    EXPECT_EQ(deposit["stress"][k], test::stress_of(made.bead));
     EXPECT_EQ(deposit["landing_radius"][k], made.landing_radius);
     EXPECT_EQ(deposit["radius"][k], made.radius);
     EXPECT_EQ(deposit["mass"][k], made.bead.mass);
@@ -115,7 +115,8 @@ TEST(RunFile, has_only_the_parts_that_were_asked_for) {
   {
     const auto inviscid =
         std::make_shared<RunFile>(folder / "inviscid.h5", false, Provenance{}, 1);
-    record_frames(inviscid, 1, false)->observe(fabricated_jet(5, false).snapshot());
+    record_frames(inviscid, 1, *BeadTable::basic())
+        ->observe(fabricated_jet(5, false).snapshot());
   }
   EXPECT_EQ(names_in(folder / "inviscid.h5", "/"), (Names{"beads", "frames", "scene"}));
   EXPECT_EQ(names_in(folder / "inviscid.h5", "/beads"),
@@ -286,7 +287,7 @@ TEST(RunFile, is_readable_at_every_flush_while_it_grows) {
   const ScratchFolder folder;
   const auto file =
       std::make_shared<RunFile>(folder / "run.h5", false, fabricated_provenance(), 1e9);
-  const auto shown = record_frames(file, 1e-5, true);
+  const auto shown = record_frames(file, 1e-5, *test::table_with_stress());
   for (std::size_t k = 0; k < 30; ++k) {
     shown->observe(fabricated_jet(k).snapshot());
     EXPECT_EQ(RunReader(folder / "run.h5").frame_times().size(), k);
@@ -304,7 +305,7 @@ TEST(RunFile, many_flushes_do_not_make_a_large_file) {
     {
       const auto file =
           std::make_shared<RunFile>(folder / name, false, Provenance{}, flush_interval);
-      const auto shown = record_frames(file, 1e-5, true);
+      const auto shown = record_frames(file, 1e-5, *test::table_with_stress());
       for (std::size_t k = 0; k < 100; ++k) shown->observe(fabricated_jet(k).snapshot());
     }
     return fs::file_size(folder / name);

@@ -69,7 +69,7 @@ TEST(RunReader, takes_the_nearest_frame_and_of_two_the_earlier) {
   const ScratchFolder folder;
   {
     const auto file = std::make_shared<RunFile>(folder / "run.h5", false, Provenance{}, 1);
-    const auto shown = record_frames(file, 0.25, true);
+    const auto shown = record_frames(file, 0.25, *test::table_with_stress());
     for (const double time :
          {0., 0.25, 0.5, 0.75}) { // exact in binary, so that ties are ties
       FabricatedJet jet = fabricated_jet(3);
@@ -89,7 +89,7 @@ TEST(RunReader, takes_the_nearest_frame_and_of_two_the_earlier) {
 TEST(RunReader, a_run_without_a_frame_yet_has_no_nearest_one) {
   const ScratchFolder folder;
   const auto file = std::make_shared<RunFile>(folder / "run.h5", false, Provenance{}, 1);
-  const auto shown = record_frames(file, 1, true);
+  const auto shown = record_frames(file, 1, *test::table_with_stress());
   const RunReader run(folder / "run.h5");
   EXPECT_TRUE(run.frame_times().empty());
   EXPECT_THROW(static_cast<void>(run.nearest_frame(0)), InputError);

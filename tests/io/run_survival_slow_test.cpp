@@ -80,8 +80,10 @@ TEST(RunSurvival, dying_within_any_write_of_a_small_run_keeps_the_last_flush) {
     EXPECT_EQ(run.message(), "");
     expect_intact(run, flushed);
   };
-  die_within_every_write(path, check, [&] { frames = record_frames(file, 1e-5, true); });
-  die_within_every_write(path, check, [&] { deposit = record_deposit(file); });
+  die_within_every_write(
+      path, check, [&] { frames = record_frames(file, 1e-5, *test::table_with_stress()); });
+  die_within_every_write(
+      path, check, [&] { deposit = record_deposit(file, test::table_with_stress()); });
   die_within_every_write(path, check,
                          [&] { observables = record_observables(file, 1e-5); });
   for (const std::uint64_t more : {4U, 20U}) {
@@ -101,7 +103,7 @@ TEST(RunSurvival, dying_while_the_chunk_index_is_split_keeps_the_last_flush) {
   const ScratchFolder folder;
   const auto path = folder / "run.h5";
   const auto file = std::make_shared<RunFile>(path, false, fabricated_provenance(), 1e9);
-  const auto frames = record_frames(file, 1e-5, true);
+  const auto frames = record_frames(file, 1e-5, *test::table_with_stress());
   FabricatedJet jet;
   jet.jet.mass = jet.jet.charge = jet.jet.volume =
       std::vector<double>(4096, 1); // beads of one chunk
@@ -138,7 +140,7 @@ TEST(RunSurvival, dying_while_a_checkpoint_is_written_keeps_the_last_one_or_has_
   const ScratchFolder folder;
   const auto path = folder / "run.h5";
   const auto file = std::make_shared<RunFile>(path, false, fabricated_provenance(), 1e9);
-  const auto frames = record_frames(file, 1e-5, true);
+  const auto frames = record_frames(file, 1e-5, *test::table_with_stress());
   for (std::uint64_t k = 0; k < 5; ++k) {
     SCOPED_TRACE("checkpoint " + std::to_string(k));
     frames->observe(fabricated_jet(k).snapshot());

@@ -42,8 +42,9 @@ private:
 [[noreturn]] void write_for_ever(const std::filesystem::path& path,
                                  SharedCount::Count& flushed) {
   const auto file = std::make_shared<RunFile>(path, true, fabricated_provenance(), 0);
-  const auto observables = record_observables(file, 1e-5), deposit = record_deposit(file);
-  const auto shown = record_frames(file, 1e-5, true);
+  const auto observables = record_observables(file, 1e-5),
+             deposit = record_deposit(file, test::table_with_stress());
+  const auto shown = record_frames(file, 1e-5, *test::table_with_stress());
   for (std::uint64_t k = 0;; ++k) {
     const FabricatedJet jet = fabricated_jet(k);
     observables->observe(jet.snapshot());
@@ -106,8 +107,9 @@ TEST(RunSurvival, a_full_disk_ends_the_run_and_leaves_the_last_flush) {
     const ShortFiles limit(600 * 1024);
     const auto file =
         std::make_shared<RunFile>(folder / "run.h5", false, fabricated_provenance(), 1e9);
-    const auto observables = record_observables(file, 1e-5), deposit = record_deposit(file);
-    const auto shown = record_frames(file, 1e-5, true);
+    const auto observables = record_observables(file, 1e-5),
+               deposit = record_deposit(file, test::table_with_stress());
+    const auto shown = record_frames(file, 1e-5, *test::table_with_stress());
     FabricatedJet jet;
     std::string message;
     for (std::uint64_t k = 0; message.empty() && k < 100000; ++k) {

@@ -200,11 +200,12 @@ TEST(Refinement, keeps_wildly_varying_contents_positive) {
 
 // Bead 0 owns no link.
 TEST(Refinement, what_bead_zero_carries_plays_no_part) {
-  for (RefinementRule rule : link_remaps(0.1))
+  for (const RefinementRule& rule : link_remaps(0.1))
     for (const ColumnRemap stress : {ColumnRemap::spline, ColumnRemap::conservative}) {
-      rule.stress = stress, rule.velocity = ColumnRemap::conservative;
-      JetState jet = graded_helix(20), other = jet;
-      other.columns().stress()[0] = 1e6;
+      JetState jet = graded_helix(20);
+      jet.table = table_with_stress(ColumnRemap::conservative, stress);
+      JetState other = jet;
+      stress_of(other.columns())[0] = 1e6;
       other.volume[0] = other.mass[0] = other.charge[0] = 1e6;
       const auto change = refine_jet(jet, rule);
       ASSERT_TRUE(change && refine_jet(other, rule));
@@ -216,9 +217,9 @@ TEST(Refinement, what_bead_zero_carries_plays_no_part) {
 // --- momentum and stress ---------------------------------------------------------------------
 
 TEST(Refinement, keeps_momentum_and_makes_no_kinetic_energy_if_asked_to) {
-  for (RefinementRule rule : link_remaps(0.05)) { // whatever becomes of the masses
-    rule.velocity = ColumnRemap::conservative;
+  for (const RefinementRule& rule : link_remaps(0.05)) { // whatever becomes of the masses
     JetState jet = graded_helix(60);
+    jet.table = table_with_stress(ColumnRemap::conservative);
     const Sums before(jet);
     ASSERT_TRUE(refine_jet(jet, rule));
     const Sums after(jet);
@@ -230,9 +231,9 @@ TEST(Refinement, keeps_momentum_and_makes_no_kinetic_energy_if_asked_to) {
 }
 
 TEST(Refinement, keeps_volume_times_stress_and_makes_no_elastic_energy_if_asked_to) {
-  for (RefinementRule rule : link_remaps(0.05)) {
-    rule.stress = ColumnRemap::conservative;
+  for (const RefinementRule& rule : link_remaps(0.05)) {
     JetState jet = graded_helix(60);
+    jet.table = table_with_stress(ColumnRemap::spline, ColumnRemap::conservative);
     const Sums before(jet);
     ASSERT_TRUE(refine_jet(jet, rule));
     const Sums after(jet);
@@ -249,13 +250,15 @@ TEST(Refinement, a_uniformly_stretching_jet_keeps_stretching_uniformly) {
   const auto prepare = jet.columns();
   for (std::size_t k = 0; k < jet.beads(); ++k) {
     prepare.velocity().set(k, rate * prepare.position()[k]);
-    prepare.stress()[k] = stress;
+    stress_of(prepare)[k] = stress;
   }
   const double length = along.dot(prepare.position()[40]);
-  for (RefinementRule rule : link_remaps(0.2)) {
-    rule.stress = rule.remap == LinkRemap::conservative ? ColumnRemap::conservative
-                                                        : ColumnRemap::spline;
+  for (const RefinementRule& rule : link_remaps(0.2)) {
     JetState refined = jet;
+    refined.table =
+        table_with_stress(ColumnRemap::spline, rule.remap == LinkRemap::conservative
+                                                   ? ColumnRemap::conservative
+                                                   : ColumnRemap::spline);
     const auto change = refine_jet(refined, rule);
     ASSERT_TRUE(change);
     const auto c = refined.columns();
@@ -265,7 +268,7 @@ TEST(Refinement, a_uniformly_stretching_jet_keeps_stretching_uniformly) {
       const Vec3 place = (start + l * real(k - s)) * along;
       EXPECT_LE((c.position()[k] - place).norm(), 1e-12 * length) << k;
       EXPECT_LE((c.velocity()[k] - rate * place).norm(), 1e-12 * rate * length) << k;
-      EXPECT_NEAR(c.stress()[k] / stress, 1, 1e-12) << k;
+      EXPECT_NEAR(stress_of(c)[k] / stress, 1, 1e-12) << k;
     }
     EXPECT_LE(change->worst_link, 1e-12);
   }
@@ -370,9 +373,9 @@ TEST(Refinement, cuts_jets_of_few_beads) {
 
 TEST(Refinement, works_without_stresses) {
   JetState with = graded_helix(40), without = with;
-  without.y.resize(6 * without.beads());
-  RefinementRule rule = cut(0.1);
-  rule.stress = ColumnRemap::conservative;
+  with.table = table_with_stress(ColumnRemap::spline, ColumnRemap::conservative);
+  without.y.resize(6 * without.beads()), without.table = BeadTable::basic();
+  const RefinementRule rule = cut(0.1);
   ASSERT_TRUE(refine_jet(with, rule));
   ASSERT_TRUE(refine_jet(without, rule));
   with.y.resize(6 * with.beads());
@@ -409,16 +412,17 @@ TEST(Refinement, cuts_a_given_chain_from_its_first_bead_on) {
 
 // As if the embryo were not there: its place and contents play no part.
 TEST(Refinement, passes_an_embryo_by) {
-  for (RefinementRule rule : link_remaps(0.1)) {
-    rule.velocity = ColumnRemap::conservative, rule.stress = ColumnRemap::conservative;
-    JetState without = graded_helix(40), with = without;
+  for (const RefinementRule& rule : link_remaps(0.1)) {
+    JetState without = graded_helix(40);
+    without.table = table_with_stress(ColumnRemap::conservative, ColumnRemap::conservative);
+    JetState with = without;
     insert_bead(with, 1,
                 {.position = {5, 6, 7},
                  .velocity = {8, 9, 10},
-                 .stress = 11,
                  .volume = 12,
                  .mass = 13,
-                 .charge = 14});
+                 .charge = 14,
+                 .declared = {11}});
     with.has_embryo = true;
     const JetState old = with;
     const auto change = refine_jet(with, rule), expected = refine_jet(without, rule);
@@ -477,14 +481,15 @@ TEST(Refinement, a_landed_leading_bead_stays_the_last_one_where_and_as_it_is) {
     for (const ColumnRemap velocity : {ColumnRemap::spline, ColumnRemap::conservative})
       for (const ColumnRemap stress : {ColumnRemap::spline, ColumnRemap::conservative}) {
         RefinementRule rule = base;
-        rule.velocity = velocity, rule.stress = stress, rule.collector = 1;
-        const JetState old = landing_jet();
-        JetState jet = old;
+        rule.collector = 1;
+        JetState jet = landing_jet();
+        jet.table = table_with_stress(velocity, stress);
+        const JetState old = jet;
         ASSERT_TRUE(refine_jet(jet, rule));
         const Bead before = bead_at(old, 9), after = bead_at(jet, jet.links());
         EXPECT_EQ(after.position, before.position);
         EXPECT_EQ(after.velocity, before.velocity);
-        EXPECT_EQ(after.stress, before.stress);
+        EXPECT_EQ(stress_of(after), stress_of(before));
         ASSERT_EQ(jet.landed.size(), 1U);
         EXPECT_EQ(jet.landed[0].bead, jet.links());
         EXPECT_EQ(jet.landed[0].time, 0.1);
@@ -501,7 +506,7 @@ TEST(Refinement, a_flying_leading_bead_stays_where_it_is) {
   ASSERT_TRUE(refine_jet(jet, cut(0.05)));
   EXPECT_EQ(bead_at(jet, jet.links()).position, before.position);
   EXPECT_EQ(bead_at(jet, jet.links()).velocity, before.velocity);
-  EXPECT_EQ(bead_at(jet, jet.links()).stress, before.stress);
+  EXPECT_EQ(stress_of(bead_at(jet, jet.links())), stress_of(before));
   EXPECT_TRUE(jet.landed.empty());
 }
 

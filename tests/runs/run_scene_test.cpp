@@ -199,7 +199,8 @@ TEST(RunScene, simulation_file_and_observers_may_go_in_any_order) {
     const auto path = folder / (std::to_string(first) + ".h5");
     auto file = std::make_shared<RunFile>(path, false, Provenance{}, 1e9);
     auto simulation = build_simulation(scene);
-    std::shared_ptr<Observer> frames = record_frames(file, 1e-4, true);
+    std::shared_ptr<Observer> frames =
+        record_frames(file, 1e-4, *test::table_with_stress());
     auto budget = std::make_shared<Budget>(simulation->dynamics(), simulation->events());
     std::shared_ptr<Observer> book = record_budget(file, 1e-4, budget);
     for (const std::shared_ptr<Observer>& o :

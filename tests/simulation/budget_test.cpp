@@ -85,7 +85,7 @@ TEST(Budget, has_the_published_parts) {
 TEST(Budget, of_a_chain_held_at_both_ends_closes) {
   GoldenChain golden("free");
   golden.scene.config.chain->fixed = FixedEnds::both;
-  for (double& stress : golden.scene.chain.stress) stress = 1e3;
+  for (double& stress : stresses(golden.scene.chain)) stress = 1e3;
   integrate(golden.scene, "dop853", 1e-11);
   const FinishedRun run(golden.scene, 2e-4, 1e-4);
   EXPECT_LE(run.worst(), 1e-12 * run.rows.front().at("coulomb_energy"));
@@ -128,7 +128,7 @@ TEST(Budget, has_columns_for_what_the_scene_has_and_no_others) {
 }
 
 /// A term whose force is a little stronger than it says.
-class Stronger final : public Rheology {
+class Stronger final : public ForceTerm {
 public:
   Stronger(std::unique_ptr<ForceTerm> term, double factor)
       : term_(std::move(term))
@@ -142,8 +142,12 @@ public:
     term_->add_force(stage, view);
     for (std::size_t k = 0; k < n; ++k) force.add(k, factor_ * view[k]);
   }
-  void stress_rate(const Stage& stage, std::span<double> rate) override {
-    dynamic_cast<Rheology&>(*term_).stress_rate(stage, rate);
+  [[nodiscard]] std::vector<BeadColumn> columns() const override {
+    return term_->columns();
+  }
+  void bind(const BeadTable& table) override { term_->bind(table); }
+  void set_column_rates(const Stage& stage, JetColumns<double> rates) override {
+    term_->set_column_rates(stage, rates);
   }
   // Its account is that of the force as it should be.
   [[nodiscard]] TermAccount account() const override { return term_->account(); }
@@ -185,10 +189,7 @@ TEST(Budget, does_not_close_if_a_force_is_not_what_its_energy_says) {
       add("gravity", std::make_unique<Gravity>(pvp::gravity));
       add("Coulomb", std::make_unique<CoulombForce>(make_coulomb_solver("direct")));
       add("line", std::make_unique<LineSurfaceTension>(pvp::surface_tension));
-      std::unique_ptr<Rheology> fluid =
-          std::make_unique<Maxwell>(pvp::modulus, pvp::viscosity);
-      if (kind == "fluid") fluid = std::make_unique<Stronger>(std::move(fluid), factor);
-      dynamics->set_rheology(std::move(fluid));
+      add("fluid", std::make_unique<Maxwell>(pvp::modulus, pvp::viscosity));
       BudgetedRun run(simulation_of(golden.scene, std::move(dynamics)), 2e-4);
       run.simulation->run_until(2e-4);
       if (wrong) {
@@ -204,7 +205,7 @@ class MisplacedStress final : public ForceTerm {
 public:
   void add_force(const Stage& stage, Vec3View force) override {
     const Links& links = stage.links();
-    const auto stress = stage.columns.stress();
+    const auto stress = stress_of(stage.columns);
     for (std::size_t k = links.first; k < links.last; ++k) {
       const double wrong = stage.volume[k] * (stress[k + 1] - stress[k])
                            / (links.length[k] * links.length[k]);

@@ -297,7 +297,8 @@ TEST(Checkpoint, keeps_the_choice_of_the_automatic_solver) {
   scene.config.coulomb = CoulombConfig{.solver = "auto", .tolerance = 1e-3, .leaf = 8};
   CheckedRun jet(scene, 2e-4);
   jet.simulation->run_until(1.5e-3);
-  const auto beads = static_cast<double>(jet.checkpoints.back().at("jet.mass").size());
+  const auto beads =
+      static_cast<double>(jet.checkpoints.back().at("jet.columns.mass").size());
   scene.costs = prices(0.95 * beads);
   const auto whole = expect_same_bits(scene, 1.5e-3, 2e-4);
   const Checkpoint& last = whole.checkpoints.back();
@@ -367,7 +368,7 @@ TEST(Checkpoint, of_another_scene_or_damaged_is_refused) {
   EXPECT_THROW(build_simulation(without_stress)->restore(good), InputError);
   EXPECT_THROW(build_simulation(refined)->restore(good), InputError);
   Checkpoint shorter = good, less = good;
-  shorter.at("jet.charge").pop_back();
+  shorter.at("jet.columns.charge").pop_back();
   less.erase("step");
   EXPECT_THROW(build_simulation(scene)->restore(shorter), InputError);
   EXPECT_THROW(build_simulation(scene)->restore(less), InputError);

@@ -38,7 +38,7 @@ TEST_P(GoldenChains, move_as_in_an_independent_computation) {
         fastest = larger(fastest, golden.velocity(i, k).norm());
       }
       for (std::size_t k = 1; k < golden.size(); ++k) {
-        stress = larger(stress, std::abs(c.stress()[k] - golden.stress(i, k)));
+        stress = larger(stress, std::abs(stress_of(c)[k] - golden.stress(i, k)));
         strongest = larger(strongest, std::abs(golden.stress(i, k)));
       }
       EXPECT_LE(position, trusted * pvp::link_length) << method << " " << golden.time(i);

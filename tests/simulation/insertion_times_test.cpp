@@ -37,7 +37,8 @@ std::vector<Happening> first_events(const Scene& scene) {
     const JetState& jet = s.jet();
     const std::size_t n = jet.links();
     EXPECT_EQ(jet.columns().velocity()[n].y(), 0);
-    seen.push_back({jet.time, jet.columns().velocity()[n].x(), jet.columns().stress()[n]});
+    seen.push_back(
+        {jet.time, jet.columns().velocity()[n].x(), stress_of(jet.columns())[n]});
   });
   simulation->run_until(8e-5);
   EXPECT_EQ(simulation->statistics().insertions, 1U);

@@ -124,10 +124,10 @@ TEST(RefinedJet, does_not_feel_the_refinement_of_a_uniformly_stretching_jet) {
   for (int k = 0; k <= 20; ++k)
     add_bead(scene, {.position = {k * spacing, 0, 0},
                      .velocity = {rate * k * spacing, 0, 0},
-                     .stress = 2e3,
                      .volume = 1e-25, // no force to speak of
                      .mass = 1e-9,
-                     .charge = 0});
+                     .charge = 0,
+                     .declared = {2e3}});
   scene.config.viscoelasticity = ViscoelasticityConfig{pvp::modulus, pvp::viscosity};
   const auto plain = run(scene, 5e-3);
   scene.config.refinement = RefinementConfig{.length = 1.2e-3, .interval = 4e-4};
@@ -135,8 +135,8 @@ TEST(RefinedJet, does_not_feel_the_refinement_of_a_uniformly_stretching_jet) {
   ASSERT_GT(refined->jet().links(), 40U);
   EXPECT_GE(refined->statistics().refinements.value_or(0), 5U);
   EXPECT_NEAR(path_length_of(refined->jet()) / path_length_of(plain->jet()), 1, 1e-12);
-  const double stress = plain->jet().columns().stress()[1];
-  const auto refined_stress = refined->jet().columns().stress();
+  const double stress = stress_of(plain->jet().columns())[1];
+  const auto refined_stress = stress_of(refined->jet().columns());
   for (std::size_t k = 1; k < refined->jet().beads(); ++k)
     EXPECT_NEAR(refined_stress[k] / stress, 1, 1e-12) << k;
 }
@@ -231,7 +231,7 @@ struct DepositDifference {
       place = larger(place, (p.bead.position - q.bead.position).norm());
       time = larger(time, std::abs(p.time - q.time));
       velocity = larger(velocity, (p.bead.velocity - q.bead.velocity).norm());
-      stress = larger(stress, std::abs(p.bead.stress - q.bead.stress));
+      stress = larger(stress, std::abs(stress_of(p.bead) - stress_of(q.bead)));
       radius = larger(radius, std::abs(p.radius / q.radius - 1));
     }
   }

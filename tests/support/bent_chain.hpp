@@ -58,7 +58,7 @@ inline Scene bent_chain(const Axes& axes, const std::string& solver, double tole
     double y = 0;
     for (const double w : wavelengths) y += amplitude * std::cos(kappa_of(w) * j);
     Bead bead = pvp_bead(j * pvp::link_length * axes[0] + y * axes[1]);
-    bead.stress = stress;
+    bead.declared = {stress};
     add_bead(scene, bead);
   }
   scene.config.coulomb = CoulombConfig{.solver = solver, .tolerance = tolerance};

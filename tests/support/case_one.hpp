@@ -41,7 +41,7 @@ inline Deviation deviation(const JetState& jet, const std::string& file) {
     d.velocity = larger(
         d.velocity,
         (c.velocity()[k] - cm * Vec3(at("vx_cm_s"), at("vy_cm_s"), at("vz_cm_s"))).norm());
-    d.stress = larger(d.stress, std::abs(c.stress()[k] - dyn_cm2 * at("stress_dyn_cm2")));
+    d.stress = larger(d.stress, std::abs(stress_of(c)[k] - dyn_cm2 * at("stress_dyn_cm2")));
   }
   return d;
 }

@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <vector>
 
+#include "support/stress.hpp"
+
 namespace ehdjet::test {
 
 /// A chain whose beads are moved by hand, and the stage that force terms look at.
@@ -34,10 +36,19 @@ struct Chain {
   std::vector<Vec3> force(ForceTerm& term) {
     std::vector<double> x(beads, 0.0), y(beads, 0.0), z(beads, 0.0);
     const Vec3View view{x, y, z};
+    term.bind(*table_with_stress());
     term.add_force(stage(), view);
     std::vector<Vec3> f;
     for (std::size_t k = 0; k < beads; ++k) f.push_back(view[k]);
     return f;
+  }
+  /// d(stress)/dt of every link.
+  std::vector<double> stress_rates(ForceTerm& term) {
+    std::vector<double> rates(flat.size());
+    term.bind(*table_with_stress());
+    term.set_column_rates(stage(), {rates, beads});
+    const auto column = stress_of(JetColumns<double>{rates, beads});
+    return {column.begin(), column.end()};
   }
 
   std::size_t beads, first = 1;

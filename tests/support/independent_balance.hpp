@@ -20,6 +20,8 @@
 #include <string>
 #include <vector>
 
+#include "support/stress.hpp"
+
 /// Energy and momentum of a jet, worked out from the model (model 8) and not from the force terms: what
 /// the accounts of the terms are compared with.
 namespace ehdjet::test {
@@ -91,7 +93,7 @@ public:
     for (std::size_t k = links.first; k <= links.last; ++k) {
       const double volume = jet.volume[k];
       if (fluid_) {
-        const double stress = c.stress()[k];
+        const double stress = stress_of(c)[k];
         e["elastic_energy"] += volume * stress * stress / (2 * fluid_->elastic_modulus);
       }
       if (line_tension_)
@@ -144,7 +146,7 @@ public:
   void add_fluid(Flows& flows) const {
     const Links& links = stage_.links();
     const auto v = stage_.columns.velocity();
-    const auto stress = stage_.columns.stress();
+    const auto stress = stress_of(stage_.columns);
     for (std::size_t k = links.first; k <= links.last; ++k) {
       const std::size_t up = links.upstream(k);
       const double volume = stage_.volume[k], l = links.length[k];

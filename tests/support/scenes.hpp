@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "support/stress.hpp"
 #include "support/table.hpp"
 #include "support/units.hpp"
 
@@ -75,20 +76,22 @@ inline Scene chain_scene(FixedEnds fixed = FixedEnds::none) {
   integrate(s, "dop853", 1e-12);
   return s;
 }
+inline std::vector<double>& stresses(ChainBeads& beads) {
+  return beads.others["stress_pa"].values;
+}
 inline void add_bead(Scene& s, const Bead& b) {
   ChainBeads& c = s.chain;
   c.x.push_back(b.position.x()), c.y.push_back(b.position.y()),
       c.z.push_back(b.position.z());
   c.vx.push_back(b.velocity.x()), c.vy.push_back(b.velocity.y()),
       c.vz.push_back(b.velocity.z());
-  c.stress.push_back(b.stress), c.volume.push_back(b.volume);
+  stresses(c).push_back(stress_of(b)), c.volume.push_back(b.volume);
   c.mass.push_back(b.mass), c.charge.push_back(b.charge);
 }
 /// What a bead of the PVP jet carries.
 inline Bead pvp_bead(const Vec3& position, const Vec3& velocity = Vec3::Zero()) {
   return {.position = position,
           .velocity = velocity,
-          .stress = 0,
           .volume = pvp::volume,
           .mass = pvp::mass,
           .charge = pvp::charge};
@@ -104,10 +107,10 @@ struct GoldenChain {
     for (std::size_t k = 0; k < beads.rows(); ++k)
       add_bead(scene, {.position = position(0, k),
                        .velocity = velocity(0, k),
-                       .stress = stress(0, k),
                        .volume = beads.at(k, "volume_cm3") * cm3,
                        .mass = beads.at(k, "mass_g") * gram,
-                       .charge = beads.at(k, "charge_statC") * statC});
+                       .charge = beads.at(k, "charge_statC") * statC,
+                       .declared = {stress(0, k)}});
     scene.config.field =
         FieldConfig{.potential = {}, .strength = 1.876298035625 * statV / cm};
     scene.config.coulomb = CoulombConfig{};

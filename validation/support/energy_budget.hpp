@@ -57,7 +57,7 @@ public:
     std::ranges::copy(y.first(n), chain_.flat.begin());
     double dissipation = 0, power = 0;
     for (std::size_t k = 1; k < jet_.beads(); ++k) {
-      const double sigma = chain_.columns().stress()[k];
+      const double sigma = stress_of(chain_.columns())[k];
       dissipation += jet_.volume[k] * sigma * sigma / pvp::viscosity;
     }
     if (!line_) {
@@ -98,7 +98,7 @@ private:
         b.coulomb +=
             constants::coulomb * jet_.charge[k] * jet_.charge[j] / (r[k] - r[j]).norm();
       if (k == 0) continue;
-      const double sigma = c.stress()[k], length = (r[k] - r[k - 1]).norm();
+      const double sigma = stress_of(c)[k], length = (r[k] - r[k - 1]).norm();
       b.elastic += jet_.volume[k] * sigma * sigma / (2 * pvp::modulus);
       if (line_) // the lateral surface 2 pi a l
         b.line_tension += 2 * pvp::surface_tension

@@ -26,7 +26,8 @@ void append(ChainBeads& chain, const Bead& b) {
   chain.x.push_back(b.position.x()), chain.y.push_back(b.position.y());
   chain.z.push_back(b.position.z()), chain.vx.push_back(b.velocity.x());
   chain.vy.push_back(b.velocity.y()), chain.vz.push_back(b.velocity.z());
-  chain.stress.push_back(b.stress), chain.volume.push_back(b.volume);
+  chain.others["stress_pa"].values.push_back(b.declared.empty() ? 0 : b.declared.front());
+  chain.volume.push_back(b.volume);
   chain.mass.push_back(b.mass), chain.charge.push_back(b.charge);
 }
 

@@ -34,6 +34,15 @@ public:
     return {to_, from_, prefix_ + std::string(name) + '.'};
   }
 
+  /// Names of the lists of this part in the checkpoint that is read.
+  [[nodiscard]] std::vector<std::string> names() const {
+    std::vector<std::string> found;
+    for (auto i = from_->lower_bound(prefix_);
+         i != from_->end() && i->first.starts_with(prefix_); ++i)
+      found.push_back(i->first.substr(prefix_.size()));
+    return found;
+  }
+
   /// `value`: a number, count, flag or sum, an optional one of these, or a list of numbers.
   template <class T>
   void operator()(std::string_view name, T& value) const {

@@ -9,6 +9,9 @@
 
 namespace ehdjet {
 
+/// What a quantity is called in CSV files: "vx" in "m/s" is vx_m_s; one without unit has its name.
+std::string csv_name(std::string_view name, std::string_view unit);
+
 /// Numbers in a CSV file, read row by row and by the names of their columns.
 ///
 /// The first line that is neither empty nor a comment (#) is the header. Columns may stand in any
@@ -17,9 +20,12 @@ namespace ehdjet {
 ///          length, and a field that was asked for and is not a finite number
 class CsvTable {
 public:
-  /// Columns are known by their position in `required` followed by `optional`.
-  CsvTable(const std::filesystem::path& file, std::vector<std::string_view> required,
-           std::vector<std::string_view> optional);
+  /// Columns are known by their position in `required` followed by `optional` and, if `others`
+  /// are asked for too, all further columns of the file.
+  CsvTable(const std::filesystem::path& file, std::vector<std::string> required,
+           const std::vector<std::string>& optional, bool others = false);
+
+  [[nodiscard]] const std::vector<std::string>& columns() const { return wanted_; }
 
   bool next_row();
   [[nodiscard]] bool has(std::size_t column) const { return position_[column] != absent; }
@@ -44,7 +50,7 @@ private:
   std::string name_, line_;
   std::ifstream in_;
   std::size_t line_number_ = 0, columns_ = 0;
-  std::vector<std::string_view> wanted_;
+  std::vector<std::string> wanted_;
   std::vector<std::size_t> position_; // of each wanted column in a row
   std::vector<Field> fields_;         // of the present row
 };

@@ -45,7 +45,7 @@ public:
   [[nodiscard]] bool has_led_bead() const { return has_led_bead_; }
   [[nodiscard]] std::span<const double> mass() const { return mass_; }
   [[nodiscard]] std::span<const double> inverse_mass() const { return inverse_mass_; }
-  /// Beads that do not move freely, and those of them whose link keeps its stress.
+  /// Beads that do not move freely, and those of them whose link keeps its columns.
   [[nodiscard]] std::span<const std::size_t> held() const { return held_; }
   [[nodiscard]] std::span<const std::size_t> frozen() const { return frozen_; }
   [[nodiscard]] Support support(std::size_t bead) const;
@@ -61,6 +61,7 @@ private:
   Constraints constraints_;
   Stage stage_;
   std::vector<double> mass_, charge_, volume_, inverse_mass_; // as they act
+  std::vector<std::vector<double>> declared_;                 // further carried columns
   std::vector<std::uint8_t> moves_;
   std::vector<LandedBead> landed_;
   std::vector<std::size_t> held_, frozen_;

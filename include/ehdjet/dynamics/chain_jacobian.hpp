@@ -38,12 +38,12 @@ public:
   [[nodiscard]] const LinkDerivatives& links() const { return links_; }
   /// Nothing changes that bead's position and velocity.
   void hold(std::size_t bead) { held_[bead] = 1; }
-  /// Nothing changes that link's stress.
+  /// Nothing changes that link's sigma.
   void freeze(std::size_t link);
   [[nodiscard]] bool is_held(std::size_t bead) const { return held_[bead] != 0; }
 
   void factorize(double eta, std::span<const double> mass);
-  /// x: [x|y|z|vx|vy|vz|stress?]
+  /// x: the integrated columns; those that are neither r, v nor sigma stay as they are.
   void solve(std::span<double> x) const;
 
   /// omega^2 of the fastest modes if neighbours move in opposite phase, bounds by rows:

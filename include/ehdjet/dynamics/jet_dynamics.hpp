@@ -28,8 +28,9 @@ namespace ehdjet {
 /// (model 6). Charges have no part in it.
 class JetDynamics final : public OdeSystem, private StiffPart {
 public:
-  void add(std::unique_ptr<ForceTerm> term) { terms_.push_back(std::move(term)); }
-  void set_rheology(std::unique_ptr<Rheology> rheology);
+  void add(std::unique_ptr<ForceTerm> term) {
+    terms_.push_back(std::move(term)), table_.reset();
+  }
   /// Bead 0 is the nozzle and beads are born there. Without it bead 0 is an ordinary bead.
   void set_inflow(std::shared_ptr<const Inflow> inflow);
   void hold(HeldEnds ends);
@@ -48,7 +49,6 @@ public:
   /// Puts the nozzle and an embryo in their places at time t.
   void prescribe(double t, std::span<double> y) const override;
 
-  [[nodiscard]] bool has_stress() const { return rheology_ != nullptr; }
   [[nodiscard]] std::uint64_t evaluations() const { return evaluations_; }
   [[nodiscard]] const std::vector<std::unique_ptr<ForceTerm>>& terms() const {
     return terms_;
@@ -75,9 +75,12 @@ private:
   void add_time_derivative(double factor, std::span<double> out) const override;
   [[nodiscard]] Modes fastest_modes() const override;
 
-  std::vector<std::unique_ptr<ForceTerm>>
-      terms_; // the rheology, which also has a force, last
-  Rheology* rheology_ = nullptr;
+  void bind_columns(std::shared_ptr<const BeadTable> table);
+
+  std::vector<std::unique_ptr<ForceTerm>> terms_;
+  std::shared_ptr<const BeadTable> table_; // that the terms are bound to
+  std::vector<ForceTerm*> with_columns_;   // terms that add integrated columns
+  std::vector<std::size_t> resting_;       // entries of the state whose rate is zero
   std::shared_ptr<const Inflow> inflow_;
   ActingChain chain_;
   std::uint64_t evaluations_ = 0;

@@ -31,7 +31,7 @@ public:
   [[nodiscard]] Vec3 velocity(double theta, std::size_t bead) const {
     return vector(theta, 3, bead);
   }
-  /// Any column of the state vector.
+  /// Any integrated column.
   [[nodiscard]] double value(double theta, std::size_t column, std::size_t bead) const {
     return component(theta, column * jet.beads() + bead);
   }

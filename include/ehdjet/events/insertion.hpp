@@ -39,7 +39,7 @@ public:
 
   [[nodiscard]] const Rule& rule() const { return rule_; }
   [[nodiscard]] const Embryo& embryo() const { return embryo_; }
-  [[nodiscard]] JetState start(std::size_t integrated_columns) const override;
+  [[nodiscard]] JetState start(std::shared_ptr<const BeadTable> table) const override;
   void prescribe(double t, bool has_led_bead, JetColumns<double> y) const override;
   [[nodiscard]] bool changes_content(bool has_led_bead) const override {
     return has_led_bead;
@@ -58,7 +58,8 @@ private:
 };
 
 /// An embryo is created between nozzle and bead 1 when |r_1 - r_0| reaches 1.5 l_step (model 4.1).
-/// Nothing jumps: its charge grows from zero and it carries no stress.
+/// Nothing jumps: its charge grows from zero, and declared columns begin with their value at birth
+/// (no stress).
 class Insertion final : public Event {
 public:
   /// `inflow` outlives the event.
@@ -79,7 +80,7 @@ private:
   const EmbryoInflow& inflow_;
 };
 
-/// The embryo becomes a free bead when |r_2 - r_0| reaches 2 l_step: stress 0, full charge. Bead 2
+/// The embryo becomes a free bead when |r_2 - r_0| reaches 2 l_step, with its full charge. Bead 2
 /// keeps its stress and volume while its link shrinks from 2 l_step to l_step (model 4.2).
 class Release final : public Event {
 public:

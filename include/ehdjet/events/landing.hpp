@@ -14,9 +14,9 @@ namespace ehdjet {
 /// its last stress. An interior bead that lands first freezes and waits (model 5).
 ///
 /// A landing ends the step, unless beads land every few steps. Then they pass the collector during
-/// a step, in which they count as resting where they crossed (JetState::absorbing_plane); time,
-/// place, velocity and stress of each landing are read off the dense output, and the chain changes
-/// at the end of the step. What that does to the motion is part of the error estimate.
+/// a step, in which they count as resting where they crossed (JetState::absorbing_plane); time and
+/// state of each bead at its landing are read off the dense output, and the chain changes at the
+/// end of the step. What that does to the motion is part of the error estimate.
 class Landing final : public Event {
 public:
   /// `collector_distance`: h [m]; `first_bead`: 1 behind a nozzle, 0 for a chain whose bead 0 is
@@ -43,9 +43,8 @@ private:
   /// A bead at the collector.
   struct Arrival {
     std::size_t bead = 0;
-    double time = 0; ///< [s]
-    Vec3 position = Vec3::Zero(), velocity = Vec3::Zero();
-    double stress = 0;
+    double time = 0;                   ///< [s]
+    std::vector<double> state;         ///< its integrated columns
     std::optional<double> link_length; ///< absent: that of the jet as it is [m]
   };
 

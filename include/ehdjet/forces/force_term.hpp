@@ -12,6 +12,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace ehdjet {
 
@@ -53,7 +54,17 @@ public:
   /// freely (nozzle, embryo, landed) is what its support has to bear; rates are set to zero
   /// afterwards. Entries of beads that are no targets may get anything.
   virtual void add_force(const Stage& stage, Vec3View force) = 0;
-  /// derivatives += what the force, and a stress rate, answer to a change of a link or of a bead's
+
+  /// Columns that the term adds to those of the jet.
+  [[nodiscard]] virtual std::vector<BeadColumn> columns() const { return {}; }
+  /// Tells the term, before all else, where in the table of the jet it finds columns.
+  virtual void bind(const BeadTable& /*table*/) {}
+  /// Writes the rates of the integrated columns that the term has added, at the targets of the
+  /// stage. Rates of a bead's columns while it does not move freely, of a link's while its bead
+  /// rests, and entry 0 of a column of links are set to zero afterwards.
+  virtual void set_column_rates(const Stage& /*stage*/, JetColumns<double> /*rates*/) {}
+
+  /// derivatives += what the force, and a column of links, answer to a change of a link or of a bead's
   /// velocity, for implicit steps. Only terms that may be stiff, which are all local, have
   /// something to add.
   virtual void add_derivatives(const Stage& /*stage*/, LinkDerivatives& /*derivatives*/) {}
@@ -83,13 +94,6 @@ public:
   [[nodiscard]] virtual std::optional<TermReport> report() const { return {}; }
   /// What the term keeps from one evaluation to the next.
   virtual void archive(const Archive& /*a*/) {}
-};
-
-/// A force term with an internal variable per link, integrated with the jet.
-class Rheology : public ForceTerm {
-public:
-  /// rate (beads) = d sigma/dt [Pa/s], at the targets of the stage
-  virtual void stress_rate(const Stage& stage, std::span<double> rate) = 0;
 };
 
 } // namespace ehdjet

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 namespace ehdjet {
@@ -25,6 +26,8 @@ struct LinkDerivatives {
   std::vector<Mat3> pull_upper, pull_lower, damping, drag;
   std::vector<Vec3> tension, stretching, turning;
   std::vector<double> relaxation; ///< 1/tau
+  /// sigma among the integrated columns; none: nothing answers with a sigma.
+  std::optional<std::size_t> sigma;
 
   void reset(std::size_t beads) {
     const auto clear = [beads](auto& column, const auto& zero) {
@@ -35,6 +38,7 @@ struct LinkDerivatives {
     for (auto* column : {&tension, &stretching, &turning})
       clear(*column, Vec3(Vec3::Zero()));
     clear(relaxation, 0.0);
+    sigma.reset();
     damping.clear(), drag.clear();
   }
   /// A tension pulls both ends of its link alike.

@@ -15,11 +15,14 @@ namespace ehdjet {
 /// laws   : internal forces sum to zero; the rate vanishes under rigid motion
 /// A landed bead keeps its stress, and counts as at rest for the link below it (model 5).
 /// source : Reneker, Yarin, Fong & Koombhongse, J. Appl. Phys. 87 (2000) 4531
-class Maxwell final : public Rheology {
+class Maxwell final : public ForceTerm {
 public:
   Maxwell(double elastic_modulus, double viscosity); ///< both > 0
   void add_force(const Stage& stage, Vec3View force) override;
-  void stress_rate(const Stage& stage, std::span<double> rate) override;
+  /// stress (integrated, of links) [Pa]
+  [[nodiscard]] std::vector<BeadColumn> columns() const override;
+  void bind(const BeadTable& table) override;
+  void set_column_rates(const Stage& stage, JetColumns<double> rates) override;
   void add_derivatives(const Stage& stage, LinkDerivatives& links) override;
   [[nodiscard]] std::string_view name() const override { return "viscoelasticity"; }
   [[nodiscard]] TermAccount account() const override;
@@ -28,6 +31,7 @@ public:
 
 private:
   double elastic_modulus_, relaxation_rate_;
+  std::size_t stress_ = 0;                 // its column
   std::vector<double> tension_per_length_; // V sigma / l^2 [N/m]
 };
 

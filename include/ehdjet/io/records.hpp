@@ -13,11 +13,12 @@ namespace ehdjet {
 /// A row per time about the jet as a whole.
 std::unique_ptr<Observer> record_observables(std::shared_ptr<RunFile> file, double interval,
                                              bool with_coulomb_error = false);
-/// All beads.
+/// All beads of jets with that table.
 std::unique_ptr<Observer> record_frames(std::shared_ptr<RunFile> file, double interval,
-                                        bool with_stress);
+                                        const BeadTable& table);
 /// A row per bead that leaves the chain.
-std::unique_ptr<Observer> record_deposit(std::shared_ptr<RunFile> file);
+std::unique_ptr<Observer> record_deposit(std::shared_ptr<RunFile> file,
+                                         std::shared_ptr<const BeadTable> table);
 /// A row per refinement.
 std::unique_ptr<Observer> record_refinements(std::shared_ptr<RunFile> file,
                                              bool with_coulomb_energy);

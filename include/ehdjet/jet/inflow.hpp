@@ -33,8 +33,8 @@ public:
 
   [[nodiscard]] const Nozzle& nozzle() const { return nozzle_; }
 
-  /// The jet at t = 0, in `integrated_columns` columns; those behind the velocity are zero.
-  [[nodiscard]] virtual JetState start(std::size_t integrated_columns) const = 0;
+  /// The jet at t = 0; declared columns have their values at birth.
+  [[nodiscard]] virtual JetState start(std::shared_ptr<const BeadTable> table) const = 0;
   /// Puts bead 0, and bead 1 if it is led, in their places at time t.
   virtual void prescribe(double t, bool has_led_bead, JetColumns<double> y) const = 0;
 

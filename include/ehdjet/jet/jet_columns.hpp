@@ -7,12 +7,12 @@
 
 namespace ehdjet {
 
-/// Names for the columns of one flat ODE vector:  [x | y | z | vx | vy | vz | stress].
+/// Names for the columns of one flat ODE vector:  [x | y | z | vx | vy | vz | declared ones].
 ///
 /// shapes : flat is (columns * beads); every column is (beads), index 0 = bead 0, the nozzle
-/// units  : [m], [m/s], [Pa]; over a rate, per second
-/// The same view works over a state, a Runge-Kutta stage and a rate. A scene without
-/// viscoelasticity has no stress column: `stress()` is empty and nothing is stored for it.
+/// units  : [m], [m/s], those of BeadTable; over a rate, per second
+/// The same view works over a state, a Runge-Kutta stage and a rate. Which columns there are
+/// behind the velocities BeadTable::integrated says.
 template <class T>
 struct JetColumns {
   std::span<T> flat;
@@ -27,10 +27,6 @@ struct JetColumns {
   }
   [[nodiscard]] Vec3Columns<T> velocity() const {
     return {column(3), column(4), column(5)};
-  }
-  [[nodiscard]] bool has_stress() const { return flat.size() > kinematic_columns * beads; }
-  [[nodiscard]] std::span<T> stress() const {
-    return has_stress() ? column(6) : std::span<T>{};
   }
   operator JetColumns<const T>() const { return {flat, beads}; }
 

@@ -1,9 +1,12 @@
 #pragma once
 
 #include "ehdjet/core/checkpoint.hpp"
+#include "ehdjet/jet/bead_table.hpp"
 #include "ehdjet/jet/jet_columns.hpp"
 
+#include <array>
 #include <cstddef>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -19,18 +22,20 @@ struct LandedBead {
 
 /// The jet: an ordered chain of beads. Bead 0 is the nozzle (or the first bead of a given
 /// chain), bead n = beads() - 1 the leading bead. Bead k owns link k, which joins it to its
-/// upstream neighbour: its stress, volume, mass and charge (model 1).
+/// upstream neighbour: its volume, mass and charge, and what force terms declare (model 1).
 ///
-/// shapes : mass, charge, volume (beads); y = [x|y|z|vx|vy|vz|stress?] (6 or 7 times beads)
+/// shapes : every carried column (beads); y = [x|y|z|vx|vy|vz|declared ones] (columns * beads)
 /// units  : SI
 /// While `has_embryo`, bead 1 is an embryo: it lies on the segment from bead 0 to bead 2,
 /// which are neighbours for every local force (model 4.1).
 struct JetState {
-  double time = 0;            ///< [s]
-  std::vector<double> y;      ///< what the integrator advances
-  std::vector<double> mass;   ///< [kg]
-  std::vector<double> charge; ///< [C], the full charge also for an embryo
-  std::vector<double> volume; ///< [m^3]
+  double time = 0;                                             ///< [s]
+  std::shared_ptr<const BeadTable> table = BeadTable::basic(); ///< which columns there are
+  std::vector<double> y;                     ///< what the integrator advances
+  std::vector<double> mass;                  ///< [kg]
+  std::vector<double> charge;                ///< [C], the full charge also for an embryo
+  std::vector<double> volume;                ///< [m^3]
+  std::vector<std::vector<double>> declared; ///< further carried columns
   bool has_embryo = false;
   std::vector<LandedBead> landed; ///< still in the chain, ascending bead index
   /// While beads land every few steps: the plane beyond which, during a step, a bead counts as
@@ -43,6 +48,14 @@ struct JetState {
   [[nodiscard]] std::size_t first() const { return has_embryo ? 2 : 1; }
   [[nodiscard]] bool is_landed(std::size_t bead) const;
 
+  /// Carried column c of the table, the three that have names included.
+  [[nodiscard]] std::vector<double>& carried(std::size_t c) {
+    constexpr std::array named{&JetState::volume, &JetState::mass, &JetState::charge};
+    return c < named.size() ? this->*named[c] : declared[c - named.size()];
+  }
+  [[nodiscard]] const std::vector<double>& carried(std::size_t c) const {
+    return const_cast<JetState*>(this)->carried(c);
+  }
   [[nodiscard]] JetColumns<double> columns() { return {y, beads()}; }
   [[nodiscard]] JetColumns<const double> columns() const { return {y, beads()}; }
 };
@@ -50,10 +63,16 @@ struct JetState {
 /// Properties of one bead, in or out of a chain. SI units.
 struct Bead {
   Vec3 position = Vec3::Zero(), velocity = Vec3::Zero();
-  double stress = 0, volume = 0, mass = 0, charge = 0;
+  double volume = 0, mass = 0, charge = 0;
+  /// In the order of BeadTable::declared; empty: as at birth.
+  std::vector<double> declared = {};
 };
 
+/// errors : InputError naming the column if a checkpoint has other columns than the jet
 void archive(const Archive& a, JetState& jet);
+
+/// A jet of that many beads whose columns are all zero.
+[[nodiscard]] JetState blank_jet(std::shared_ptr<const BeadTable> table, std::size_t beads);
 
 /// Inserts a bead so that it gets index `at`; later beads (and their landing records) move up.
 void insert_bead(JetState& jet, std::size_t at, const Bead& bead);
@@ -62,6 +81,8 @@ void insert_bead(JetState& jet, std::size_t at, const Bead& bead);
 void remove_leading_bead(JetState& jet);
 
 [[nodiscard]] Bead bead_at(const JetState& jet, std::size_t bead);
+/// All values of a bead: of the integrated, then of the carried columns.
+[[nodiscard]] std::vector<double> column_values(const Bead& bead, const BeadTable& table);
 
 /// l_k = |r_k - r_(k-1)|, where the upstream neighbour of the bead behind an embryo is bead 0 [m].
 [[nodiscard]] double link_length(const JetState& jet, std::size_t bead);

@@ -4,9 +4,11 @@
 #include "ehdjet/jet/jet_state.hpp"
 #include "ehdjet/jet/links.hpp"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 namespace ehdjet {
 
@@ -15,11 +17,12 @@ namespace ehdjet {
 class Stage {
 public:
   double time = 0;                  ///< [s]
-  JetColumns<const double> columns; ///< positions, velocities, stresses at this stage
+  JetColumns<const double> columns; ///< integrated columns at this stage
   std::span<const double> mass; ///< [kg], like charge and volume as they act at this stage
-  std::span<const double> charge; ///< [C]
-  std::span<const double> volume; ///< [m^3]
-  std::size_t first = 1;          ///< first bead below bead 0 with local forces
+  std::span<const double> charge;                ///< [C]
+  std::span<const double> volume;                ///< [m^3]
+  std::span<const std::vector<double>> declared; ///< further carried columns
+  std::size_t first = 1; ///< first bead below bead 0 with local forces
   std::span<const LandedBead> landed;
   std::span<const std::uint8_t> moves; ///< 1: the bead moves freely
   /// Beads whose forces are asked for, and those whose charges act on them: all, unless only a part
@@ -30,6 +33,11 @@ public:
   void invalidate() { links_ready_ = false; }
 
   [[nodiscard]] std::size_t beads() const { return mass.size(); }
+  /// Carried column c of the table.
+  [[nodiscard]] std::span<const double> carried(std::size_t c) const {
+    const std::array named{volume, mass, charge};
+    return c < named.size() ? named[c] : std::span(declared[c - named.size()]);
+  }
   /// Geometry of the links at the targets: of those that end at a target and of the next one.
   [[nodiscard]] const Links& links() const {
     if (!links_ready_) links_.compute(columns.position(), first, targets);

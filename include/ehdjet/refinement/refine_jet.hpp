@@ -8,24 +8,15 @@
 
 namespace ehdjet {
 
-/// How volume, mass and charge get onto a new mesh.
+/// How volume, mass, charge and other amounts (ColumnRemap::share) get onto a new mesh.
 enum class LinkRemap {
   conservative, ///< along the arc length, every sum and every bump kept (see Remap)
-  paper ///< radius by spline, V = pi a^2 l, one factor that keeps the sum of V; mass and
-        ///< charge in proportion to V
+  paper ///< radius by spline, V = pi a^2 l, one factor that keeps the sum of V; the others in
+        ///< proportion to V
 };
-/// How velocities and stresses do.
-enum class ColumnRemap {
-  spline, ///< Akima
-  conservative ///< m v and V sigma along the arc length: their sums are kept, the kinetic and the
-               ///< elastic energy can only fall
-};
-
 struct RefinementRule {
   double length = 0; ///< L~: links longer than this are cut [m]
   LinkRemap remap = LinkRemap::conservative;
-  ColumnRemap velocity = ColumnRemap::spline;
-  ColumnRemap stress = ColumnRemap::spline;
   /// Neighbouring links that are together no longer than this become one; absent: never [m].
   std::optional<double> coarsen;
   std::optional<double> collector; ///< h: new beads are not put beyond it [m]
@@ -45,8 +36,8 @@ struct MeshChange {
   double worst_link = 0;
 };
 
-/// Cuts the jet anew where its links have become too long (model 7). Positions, and by default
-/// velocities and stresses, follow Akima splines over the arc length. A landed leading bead
+/// Cuts the jet anew where its links have become too long (model 7). Each column gets onto the new
+/// mesh as the jet's table says (ColumnRemap). A landed leading bead
 /// stays the last bead of the new mesh, where and as it is; a new bead beyond the collector is
 /// put on it. Interior beads that have landed before the leading one lose their record and land
 /// anew. Nothing if no link is too long or the number of beads would not grow. Done twice, it
@@ -54,9 +45,9 @@ struct MeshChange {
 /// longer, it may add a few beads once more.
 std::optional<MeshChange> refine_jet(JetState& jet, const RefinementRule& rule);
 
-/// Joins neighbouring links that are together no longer than `rule.coarsen` (model 7): volume,
-/// mass, charge, momentum and V sigma are kept. The insertion zone and a landed bead are left
-/// alone. Nothing if there are no such links.
+/// Joins neighbouring links that are together no longer than `rule.coarsen` (model 7): amounts and
+/// the sums of weight times column (momentum, V sigma) are kept. The insertion zone and a landed
+/// bead are left alone. Nothing if there are no such links.
 std::optional<MeshChange> coarsen_jet(JetState& jet, const RefinementRule& rule);
 
 } // namespace ehdjet

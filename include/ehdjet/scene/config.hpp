@@ -4,7 +4,9 @@
 #include "ehdjet/refinement/refine_jet.hpp"
 
 #include <cstddef>
+#include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -172,17 +174,26 @@ struct SceneConfig {
   bool operator==(const SceneConfig&) const = default;
 };
 
-/// The beads of a chain scene, from bead 0 on. All columns have the same length; stress and
-/// volume belong to the link that ends at the bead (entry 0 belongs to no link).
+/// The beads of a chain scene, from bead 0 on. All columns have the same length; those of links
+/// belong to the link that ends at the bead (entry 0 belongs to no link).
 struct ChainBeads {
   std::vector<double> x, y, z;    ///< [m]
   std::vector<double> vx, vy, vz; ///< [m/s]
-  std::vector<double> stress;     ///< [Pa]
   std::vector<double> volume;     ///< [m^3]
   std::vector<double> mass;       ///< [kg]
   std::vector<double> charge;     ///< [C]
 
+  /// Another column of the file. Only columns that some force adds to the jet play a part.
+  struct Other {
+    std::vector<double> values;
+    std::string fault = {}; ///< why it has no numbers, if so
+  };
+  std::map<std::string, Other> others; ///< by their names in CSV, as stress_pa
+
   [[nodiscard]] std::size_t size() const { return x.size(); }
+  /// Fills a column of a jet, with zeros if the file does not have it.
+  /// errors : InputError if what the file has is not numbers
+  void copy_to(const BeadColumn& column, std::span<double> out) const;
 };
 
 } // namespace ehdjet

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "ehdjet/coulomb/solver_options.hpp"
+#include "ehdjet/integrators/error_scale.hpp"
 #include "ehdjet/scene/config.hpp"
 #include "ehdjet/scene/read_scene.hpp"
 #include "ehdjet/simulation/simulation.hpp"
@@ -32,7 +33,18 @@ std::unique_ptr<JetDynamics> build_dynamics(const Scene& scene);
 SolverOptions solver_options(const CoulombConfig& config,
                              const std::optional<CostModel>& costs);
 
-/// The jet at t = 0: nozzle and one bead (model 4), or the given chain.
+/// The columns of a jet: those of every jet and those that the terms add, with the error scales
+/// and remaps that the scene asks for.
+std::shared_ptr<const BeadTable> bead_table(const Scene& scene,
+                                            const JetDynamics& dynamics);
+
+/// The error that the scene allows in each integrated column.
+ErrorScale error_scale(const Scene& scene, const BeadTable& table);
+
+/// The jet at t = 0: nozzle and one bead (model 4), or the given chain. Without a table: that of
+/// the scene's own terms.
+/// errors : InputError if the chain file has a column that is in the table but is not numbers
+JetState initial_jet(const Scene& scene, std::shared_ptr<const BeadTable> table);
 JetState initial_jet(const Scene& scene);
 
 } // namespace ehdjet

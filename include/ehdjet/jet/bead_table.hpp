@@ -1,0 +1,80 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace ehdjet {
+
+/// What a column describes. Bead k owns link k, which joins it to its upstream neighbour. Bead 0
+/// owns no link: entry 0 of a column of links plays no part.
+enum class Owner { bead, link };
+
+enum class Evolution {
+  integrated, ///< by its rate; a part of the vector y that the integrator advances
+  carried     ///< constant between events
+};
+
+/// How a column gets onto another mesh (model 7). Where links are joined, `share` adds, and a
+/// column with a weight becomes the average with that weight; all others keep the value of the
+/// bead that stays.
+enum class ColumnRemap {
+  spline,       ///< integrated: Akima spline over the arc length
+  conservative, ///< integrated: weight times column along the arc length: its sum is kept, and
+                ///< the sum of weight times column squared can only fall
+  share,        ///< carried: an amount, shared out along the arc length: its sum is kept
+  label         ///< carried: a new link has the value of the old link around its middle
+};
+
+/// One property of beads or links, and all that those who move, store or write it need to know.
+struct BeadColumn {
+  std::string name, unit, description;
+  Owner owner = Owner::link;
+  Evolution evolution = Evolution::integrated;
+  ColumnRemap remap = ColumnRemap::spline;
+  /// Integrated: a carried column declared before whose values are positive, or none.
+  std::string weight = {};
+  /// Integrated: the error is measured against rtol (error_scale + |y|) (model 6), in `unit`.
+  double error_scale = 1;
+  double at_birth = 0; ///< of a new bead at the nozzle
+};
+
+/// The columns of a jet: x, y, z, vx, vy, vz (integrated), volume, mass, charge (carried), and
+/// those that force terms declare, in the order of their declaration.
+///
+/// A column is known by its place among the columns of its evolution: integrated column c is
+/// y[c beads ... (c + 1) beads), carried column c is JetState::carried(c).
+class BeadTable {
+public:
+  BeadTable();
+  /// The table of a jet for which nothing is declared.
+  static std::shared_ptr<const BeadTable> basic();
+
+  /// errors : ContractViolation for a second column of that name, an unknown weight, or a remap
+  ///          that does not suit the evolution
+  void declare(BeadColumn column);
+  /// What a scene may change; the column must exist.
+  void set_remap(std::string_view name, ColumnRemap remap);
+  void set_error_scale(std::string_view name, double scale);
+
+  [[nodiscard]] std::span<const BeadColumn> integrated() const { return integrated_; }
+  [[nodiscard]] std::span<const BeadColumn> carried() const { return carried_; }
+  /// All columns that terms have declared: the integrated ones first, then the carried ones.
+  [[nodiscard]] std::vector<BeadColumn> declared() const;
+  [[nodiscard]] std::optional<std::size_t> find_integrated(std::string_view name) const;
+  [[nodiscard]] std::optional<std::size_t> find_carried(std::string_view name) const;
+  /// The carried column that an integrated one is weighted with.
+  [[nodiscard]] std::optional<std::size_t> weight_of(std::size_t integrated) const;
+
+  static constexpr std::size_t basic_integrated = 6, basic_carried = 3;
+
+private:
+  [[nodiscard]] BeadColumn& at(std::string_view name);
+  std::vector<BeadColumn> integrated_, carried_;
+};
+
+} // namespace ehdjet
