@@ -81,7 +81,7 @@ void forces(const ForcesOptions& options) {
   for (int i = 0; i < options.repeat; ++i) {
     for (auto* f : {&fx, &fy, &fz}) std::ranges::fill(*f, 0.0);
     const auto start = std::chrono::steady_clock::now();
-    solver->add_force(c.positions(), c.q, force);
+    solver->add_force({c.positions(), c.q}, force);
     seconds.push_back(
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
   }

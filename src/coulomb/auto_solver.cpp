@@ -20,13 +20,20 @@ public:
       : options_(std::move(options))
       , costs_(options_.costs ? *options_.costs : CostModel::shipped(options_.simd)) {}
 
-  void add_force(ConstVec3View r, std::span<const double> q, Vec3View force) override {
-    choose(q.size());
-    solvers_[chosen_]->add_force(r, q, force);
+  void add_force(const PointCharges& charges, Vec3View force) override {
+    choose(charges.size());
+    solvers_[chosen_]->add_force(charges, force);
   }
-  [[nodiscard]] double energy(ConstVec3View r, std::span<const double> q) override {
-    choose(q.size());
-    return solvers_[chosen_]->energy(r, q);
+  void add_force_from(const PointCharges& sources, const PointCharges& targets,
+                      Vec3View force) override {
+    choose(std::max(sources.size(), targets.size()));
+    solvers_[chosen_]->add_force_from(sources, targets, force);
+  }
+  [[nodiscard]] double energy(ConstVec3View r, std::span<const double> q) const override {
+    SolverOptions options = options_;
+    options.solver = costs_.cheapest(q.size(), options_.tolerance);
+    options.check_every.reset();
+    return make_coulomb_solver(options)->energy(r, q);
   }
   [[nodiscard]] std::size_t coincident_pairs() const override {
     return solvers_[chosen_] ? solvers_[chosen_]->coincident_pairs() : 0;

@@ -17,12 +17,13 @@ double norm(double x, double y, double z) {
 
 } // namespace
 
-void ClusterTree::shape(std::size_t n, std::size_t leaf) {
-  if (n == n_ && leaf == leaf_) return;
-  n_ = n, leaf_ = leaf;
+void ClusterTree::shape(std::size_t first, std::size_t n, std::size_t leaf) {
+  if (first == begin_ && n == n_ && leaf == leaf_) return;
+  begin_ = first, n_ = n, leaf_ = leaf;
   clusters_.clear(), leaves_.clear(), levels_.clear();
   const std::size_t length = (n + padding - 1) / padding * padding;
-  clusters_.push_back({.end = static_cast<std::uint32_t>(length)});
+  clusters_.push_back({.begin = static_cast<std::uint32_t>(first),
+                       .end = static_cast<std::uint32_t>(first + length)});
   levels_.push_back(0);
   std::size_t level_end = 1;
   for (std::size_t i = 0; i < clusters_.size(); ++i) {
@@ -43,10 +44,10 @@ void ClusterTree::shape(std::size_t n, std::size_t leaf) {
   levels_.push_back(static_cast<std::uint32_t>(clusters_.size()));
 }
 
-void ClusterTree::bound(const ChargeColumns& charges) {
+void ClusterTree::bound(const ChargeColumns& charges, const std::uint8_t* moves) {
 #pragma omp parallel for schedule(static) if (n_ >= parallel_from)
   for (std::size_t i = 0; i < leaves_.size(); ++i)
-    bound_leaf(charges, clusters_[leaves_[i]]);
+    bound_leaf(charges, moves, clusters_[leaves_[i]]);
   for (std::size_t level = levels_.size() - 1; level-- > 0;) {
     const std::size_t begin = levels_[level], end = levels_[level + 1];
 #pragma omp parallel for schedule(static) if (end - begin >= parallel_from_parents)
@@ -56,8 +57,9 @@ void ClusterTree::bound(const ChargeColumns& charges) {
   }
 }
 
-void ClusterTree::bound_leaf(const ChargeColumns& charges, Cluster& leaf) const {
-  const std::size_t end = std::min<std::size_t>(leaf.end, n_);
+void ClusterTree::bound_leaf(const ChargeColumns& charges, const std::uint8_t* moves,
+                             Cluster& leaf) const {
+  const std::size_t end = end_of(leaf);
   const double* columns[3] = {charges.x, charges.y, charges.z};
   for (int k = 0; k < 3; ++k) {
     double low = columns[k][leaf.begin], high = low;
@@ -67,7 +69,7 @@ void ClusterTree::bound_leaf(const ChargeColumns& charges, Cluster& leaf) const 
     leaf.centre[k] = (leaf.low[k] + leaf.high[k]) / 2;
   }
   double square = 0;
-  leaf.charge = leaf.square = 0;
+  leaf.charge = leaf.square = leaf.moving = 0;
   for (std::size_t i = leaf.begin; i < end; ++i) {
     double d2 = 0;
     for (int k = 0; k < 3; ++k) {
@@ -76,9 +78,11 @@ void ClusterTree::bound_leaf(const ChargeColumns& charges, Cluster& leaf) const 
     }
     square = std::max(square, d2);
     leaf.charge += std::abs(charges.q[i]);
-    leaf.square += charges.q[i] * charges.q[i];
+    if (moves != nullptr && moves[i] == 0) continue;
+    leaf.square += charges.q[i] * charges.q[i], ++leaf.moving;
   }
-  leaf.square /= static_cast<double>(end - leaf.begin);
+  if (leaf.moving > 0) leaf.square /= leaf.moving;
+  if (moves == nullptr) leaf.moving = leaf.end - leaf.begin;
   leaf.radius = std::sqrt(square);
 }
 
@@ -99,8 +103,20 @@ void ClusterTree::bound_parent(const Cluster& a, const Cluster& b, Cluster& pare
                         / 2;
   parent.radius = std::min(reach, corner);
   parent.charge = a.charge + b.charge;
-  const double na = a.end - a.begin, nb = b.end - b.begin;
-  parent.square = (a.square * na + b.square * nb) / (na + nb);
+  parent.moving = a.moving + b.moving;
+  parent.square =
+      parent.moving > 0 ? (a.square * a.moving + b.square * b.moving) / parent.moving : 0;
+}
+
+/// Leaves of a curve are much smaller than those of charges that fill space with as many leaves;
+/// leaves of charges in no order are as large as everything.
+bool ClusterTree::is_ordered() const {
+  constexpr std::size_t too_few = 16;
+  if (leaves_.size() < too_few) return true;
+  double sum = 0;
+  for (const std::uint32_t leaf : leaves_) sum += clusters_[leaf].radius;
+  const auto number = static_cast<double>(leaves_.size());
+  return sum / number <= 1.5 * clusters_[0].radius / std::cbrt(number);
 }
 
 } // namespace ehdjet::detail

@@ -53,7 +53,7 @@ double seconds_per_call(CoulombSolver& solver, TrialJet& jet) {
   double best = 1e300, spent = 0;
   for (int calls = 0; calls < 3 || (spent < 0.02 && calls < 1000); ++calls) {
     const auto start = Clock::now();
-    solver.add_force({jet.x, jet.y, jet.z}, jet.q, {jet.fx, jet.fy, jet.fz});
+    solver.add_force({{jet.x, jet.y, jet.z}, jet.q}, {jet.fx, jet.fy, jet.fz});
     const double time = std::chrono::duration<double>(Clock::now() - start).count();
     best = std::min(best, time), spent += time;
     if (time > 0.3) break;

@@ -2,6 +2,7 @@
 
 #include "ehdjet/core/constants.hpp"
 #include "ehdjet/core/error.hpp"
+#include "ehdjet/coulomb/pair_sum.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -21,19 +22,12 @@ struct TargetError {
 TargetError error_of(std::size_t i, ConstVec3View r, std::span<const double> q,
                      ConstVec3View force) {
   using Real = long double;
-  Real fx = 0, fy = 0, fz = 0, pair_sum = 0;
-  for (std::size_t j = 0; j < q.size(); ++j) {
-    const Real dx = Real(r.x[i]) - r.x[j], dy = Real(r.y[i]) - r.y[j],
-               dz = Real(r.z[i]) - r.z[j];
-    const Real r2 = dx * dx + dy * dy + dz * dz;
-    if (r2 == 0) continue; // the bead itself, or a coincident one
-    const Real f = constants::coulomb * Real(q[i]) * q[j] / r2,
-               f_over_r = f / std::sqrt(r2);
-    fx += f_over_r * dx, fy += f_over_r * dy, fz += f_over_r * dz;
-    pair_sum += std::abs(f);
-  }
+  const PairSum<Real> sum = pair_sum<Real>(r[i], r, q, 0, q.size());
+  const Real factor = constants::coulomb * Real(q[i]);
+  const Real fx = factor * sum.x, fy = factor * sum.y, fz = factor * sum.z;
   const Real ex = force.x[i] - fx, ey = force.y[i] - fy, ez = force.z[i] - fz;
-  return {ex * ex + ey * ey + ez * ez, fx * fx + fy * fy + fz * fz, pair_sum};
+  return {ex * ex + ey * ey + ez * ez, fx * fx + fy * fy + fz * fz,
+          std::abs(factor) * sum.magnitude};
 }
 
 double ratio(long double a, long double b) {

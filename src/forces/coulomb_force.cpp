@@ -10,7 +10,7 @@ namespace ehdjet {
 void CoulombForce::add_force(const Stage& stage, Vec3View force) {
   const std::size_t n = stage.beads();
   if (stage.targets.covers(n) && stage.sources.covers(n)) {
-    solver_->add_force(stage.columns.position(), stage.charge, force);
+    solver_->add_force({stage.columns.position(), stage.charge}, force);
     coincident_pairs_ += solver_->coincident_pairs();
     return;
   }

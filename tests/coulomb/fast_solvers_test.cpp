@@ -168,11 +168,15 @@ class Wrong final : public CoulombSolver {
 public:
   explicit Wrong(int& tightened)
       : tightened_(tightened) {}
-  void add_force(ConstVec3View r, std::span<const double> q, Vec3View force) override {
-    exact_->add_force(r, q, force);
+  void add_force(const PointCharges& charges, Vec3View force) override {
+    exact_->add_force(charges, force);
     for (double& f : force.x) f *= tightened_ < 2 ? 1.001 : 1;
     for (double& f : force.y) f *= tightened_ < 2 ? 1.001 : 1;
     for (double& f : force.z) f *= tightened_ < 2 ? 1.001 : 1;
+  }
+  void add_force_from(const PointCharges& sources, const PointCharges& targets,
+                      Vec3View force) override {
+    exact_->add_force_from(sources, targets, force);
   }
   [[nodiscard]] std::size_t coincident_pairs() const override { return 0; }
   [[nodiscard]] CoulombAccuracy accuracy() const override { return {.tolerance = 1e-6}; }
