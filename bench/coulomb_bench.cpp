@@ -82,7 +82,7 @@ void time_force(benchmark::State& state, CoulombSolver& solver, int threads) {
   const int before = omp_get_max_threads();
   omp_set_num_threads(threads);
   solver.add_force({jet.r(), jet.q}, jet.force());
-  const CoulombErrorSample error = sampled_error(jet.r(), jet.q, jet.force());
+  const CoulombErrorSample error = sampled_error({jet.r(), jet.q}, jet.force());
   for (auto _ : state) {
     solver.add_force({jet.r(), jet.q}, jet.force());
     benchmark::DoNotOptimize(jet.fx.data());

@@ -60,9 +60,7 @@ private:
 
   void check(const PointCharges& charges, ConstVec3View force) {
     const auto [tolerance, norm] = solver_->accuracy();
-    const CoulombErrorSample sample = sampled_error(charges.r, charges.q, force, sampled);
-    checks_.last =
-        norm == ToleranceNorm::global ? sample.relative_l2 : sample.worst_per_target;
+    checks_.last = sampled_error(charges, force, norm, sampled).in(norm);
     checks_.largest = std::max(checks_.largest, checks_.last);
     ++checks_.number;
     // The direct sum promises 0 and has its round-off.

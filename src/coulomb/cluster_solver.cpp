@@ -39,6 +39,7 @@ public:
       , parameters_(parameters)
       , expansions_(kernels.expansions, parameters.order)
       , multipoles_(expansions_)
+      , of_targets_(expansions_)
       , scale_(kernels.expansions, parameters.order)
       , far_field_(std::move(far_field)) {
     EHDJET_EXPECTS(parameters.leaf > 0 && parameters.leaf % padding == 0);
@@ -65,10 +66,12 @@ public:
   }
   [[nodiscard]] std::string_view name() const override { return far_field_->name(); }
   [[nodiscard]] std::string description() const override {
-    return fmt::format("{}, tolerance {:g}{}, order {}, leaves of {}", name(),
-                       parameters_.tolerance,
-                       parameters_.norm == ToleranceNorm::per_bead ? " per bead" : "",
-                       parameters_.order, parameters_.leaf);
+    return fmt::format(
+        "{}, tolerance {:g}{}, order {}, leaves of {}", name(), parameters_.tolerance,
+        parameters_.norm == ToleranceNorm::per_bead ? " per bead"
+        : parameters_.norm == ToleranceNorm::moving ? " of the charges that move"
+                                                    : "",
+        parameters_.order, parameters_.leaf);
   }
   void tighten() override { strictness_ /= 2; }
   void archive(const Archive& a) override { a("strictness", strictness_); }
@@ -81,7 +84,7 @@ private:
     const std::size_t n = groups.back().size();
     const auto threads =
         static_cast<std::size_t>(threads_for(std::max(n, groups.front().size())));
-    charges_.load(groups, threads);
+    charges_.load(groups, threads, parameters_.norm == ToleranceNorm::moving);
     clusters_[0].find(charges_, 0, parameters_.leaf);
     if (!mutual) clusters_[1].find(charges_, 1, parameters_.leaf);
     const ClusterProblem problem{.pairs = kernels_.pairs,
@@ -92,12 +95,18 @@ private:
                                  .multipoles = multipoles_,
                                  .acceptance = acceptance_};
     multipoles_.reserve(problem.sources);
+    if (!mutual) of_targets_.reserve(problem.targets);
     far_field_->reserve(problem, threads);
 #pragma omp parallel num_threads(static_cast <int>(threads)) if (threads > 1)
     { // the runtime may grant fewer threads than asked for
       const auto team = static_cast<std::size_t>(omp_get_num_threads());
       const auto thread = static_cast<std::size_t>(omp_get_thread_num());
       multipoles_.gather(problem.sources, charges_.columns());
+      multipoles_.weigh(clusters_[0].tree);
+      if (!mutual) {
+        of_targets_.gather(problem.targets, charges_.columns());
+        of_targets_.weigh(clusters_[1].tree);
+      }
       if (!acceptance_.per_bead) scale_.sample(problem);
 #pragma omp single
       acceptance_.allowed = allowed_error(mutual);
@@ -116,15 +125,15 @@ private:
     const double margin =
         sorted ? margin_in_space : margin_on_curves(levels - 1, parameters_.order);
     const double allowed = margin * strictness_ * parameters_.tolerance;
-    return acceptance_.per_bead ? allowed : allowed * scale_.value();
+    return acceptance_.per_bead ? allowed : allowed * scale_.value(parameters_.norm);
   }
 
   Kernels kernels_;
   ClusterParameters parameters_;
   Expansions expansions_;
   ScaledCharges charges_;
-  Clusters clusters_[2]; ///< of sources and of targets
-  Multipoles multipoles_;
+  Clusters clusters_[2];               ///< of sources and of targets
+  Multipoles multipoles_, of_targets_; ///< these for their lumpiness only
   ForceScale scale_;
   Acceptance acceptance_;
   std::unique_ptr<FarField> far_field_;

@@ -1,6 +1,7 @@
 #include "cluster_tree.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "expansion_kernel.hpp"
@@ -108,15 +109,51 @@ void ClusterTree::bound_parent(const Cluster& a, const Cluster& b, Cluster& pare
       parent.moving > 0 ? (a.square * a.moving + b.square * b.moving) / parent.moving : 0;
 }
 
+namespace {
+
+constexpr std::size_t part_of_leaves = 64; // that are looked at together
+
 /// Leaves of a curve are much smaller than those of charges that fill space with as many leaves;
-/// leaves of charges in no order are as large as everything.
+/// leaves of charges in no order are as large as all of them together. Tenths at both ends are left
+/// out: a charge far away may be in any leaf.
+bool are_ordered(std::span<const Cluster> clusters, std::span<const std::uint32_t> leaves) {
+  std::array<double, part_of_leaves> values;
+  const auto number = static_cast<double>(leaves.size());
+  const auto of_leaves = [&](double part, auto value) { // a quantile
+    const auto end =
+        std::ranges::transform(leaves, values.begin(), [&](std::uint32_t leaf) {
+          return value(clusters[leaf]);
+        }).out;
+    const auto at = values.begin() + static_cast<std::ptrdiff_t>(part * (number - 1));
+    std::nth_element(values.begin(), at, end);
+    return *at;
+  };
+  double square = 0;
+  for (int k = 0; k < 3; ++k) {
+    const double low = of_leaves(0.1, [k](const Cluster& c) { return c.low[k]; });
+    const double high = of_leaves(0.9, [k](const Cluster& c) { return c.high[k]; });
+    square += (high - low) * (high - low);
+  }
+  const double leaf = of_leaves(0.5, [](const Cluster& c) { return c.radius; });
+  return leaf <= 1.5 * std::sqrt(square) / 2 / std::cbrt(number);
+}
+
+} // namespace
+
+// Charges may be in order from place to place and in none within each, so that some parts are
+// looked at one by one.
 bool ClusterTree::is_ordered() const {
-  constexpr std::size_t too_few = 16;
+  constexpr std::size_t too_few = 16, most_parts = 8;
   if (leaves_.size() < too_few) return true;
-  double sum = 0;
-  for (const std::uint32_t leaf : leaves_) sum += clusters_[leaf].radius;
-  const auto number = static_cast<double>(leaves_.size());
-  return sum / number <= 1.5 * clusters_[0].radius / std::cbrt(number);
+  const std::span<const std::uint32_t> leaves(leaves_);
+  const std::size_t length = std::min(part_of_leaves, leaves.size()),
+                    parts = std::min(most_parts, leaves.size() / length);
+  std::size_t ordered = 0;
+  for (std::size_t k = 0; k < parts; ++k) {
+    const std::size_t begin = parts == 1 ? 0 : (leaves.size() - length) * k / (parts - 1);
+    if (are_ordered(clusters_, leaves.subspan(begin, length))) ++ordered;
+  }
+  return 2 * ordered > parts;
 }
 
 } // namespace ehdjet::detail

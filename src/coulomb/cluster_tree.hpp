@@ -20,6 +20,7 @@ struct Cluster {
   double charge = 0;                ///< sum of |q|
   double square = 0;                ///< mean of q^2 over the charges that move
   double moving = 0;                ///< number of these, padding included
+  double lumped = 1;                ///< what its series errs more than a smooth cluster's
 
   [[nodiscard]] bool is_leaf() const { return child == 0; }
 };
@@ -34,9 +35,11 @@ public:
   void shape(std::size_t begin, std::size_t n, std::size_t leaf);
   /// Balls, boxes and charges of all clusters, leaves first. `moves` null: all charges move.
   void bound(const ChargeColumns& charges, const std::uint8_t* moves);
-  /// Whether charges that follow each other are neighbours in space; otherwise clusters are as
-  /// large as all there is.
+  /// Whether charges that follow each other are neighbours in space; otherwise leaves are as large
+  /// as what is around them. A few charges far away do not count.
   [[nodiscard]] bool is_ordered() const;
+  /// For the part of its error that a cluster's lumpiness adds (Multipoles::weigh).
+  [[nodiscard]] std::span<Cluster> clusters() { return clusters_; }
 
   /// Level after level from the root, number 0; children behind their parents.
   [[nodiscard]] std::span<const Cluster> clusters() const { return clusters_; }

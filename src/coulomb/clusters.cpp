@@ -3,29 +3,40 @@
 #include <omp.h>
 
 #include <algorithm>
+#include <utility>
 
-#include "expansion_kernel.hpp"
+#include "multipoles.hpp"
 
 namespace ehdjet::detail {
 namespace {
 
-/// Bits of three numbers of 21 bits each, interleaved: neighbours in space are mostly neighbours
-/// in this order (Morton's).
-std::uint64_t interleaved(std::uint64_t x, std::uint64_t y, std::uint64_t z) {
-  const auto spread = [](std::uint64_t v) {
-    v = (v | v << 32U) & 0x1f00000000ffffU;
-    v = (v | v << 16U) & 0x1f0000ff0000ffU;
-    v = (v | v << 8U) & 0x100f00f00f00f00fU;
-    v = (v | v << 4U) & 0x10c30c30c30c30c3U;
-    return (v | v << 2U) & 0x1249249249249249U;
-  };
-  return spread(x) | spread(y) << 1U | spread(z) << 2U;
+constexpr std::size_t parallel_from = 1024;
+
+/// Sorted, charges that fill space have fewer neighbours than curves that do. Those of a jet have 60
+/// at most.
+constexpr double worth_sorting = 80;
+
+double mean_neighbours(const ClusterTree& tree) {
+  constexpr std::size_t samples = 8;
+  constexpr double near = 3;
+  const auto clusters = tree.clusters();
+  const auto leaves = tree.leaves();
+  std::size_t neighbours = 0;
+  for (std::size_t k = 0; k < samples; ++k) {
+    const Cluster& a = clusters[leaves[(2 * k + 1) * leaves.size() / (2 * samples)]];
+    for (const std::uint32_t leaf : leaves) {
+      const Cluster& b = clusters[leaf];
+      const auto [x, y, z] = between(a.centre, b.centre);
+      const double reach = near * (a.radius + b.radius);
+      neighbours += x * x + y * y + z * z < reach * reach ? 1 : 0;
+    }
+  }
+  return static_cast<double>(neighbours) / samples;
 }
 
 } // namespace
 
 int threads_for(std::size_t charges) {
-  constexpr std::size_t parallel_from = 1024;
   return charges < parallel_from ? 1 : omp_get_max_threads();
 }
 
@@ -34,26 +45,48 @@ void Clusters::find(ScaledCharges& charges, std::size_t group, std::size_t leaf)
   const std::size_t n = g.charges.size();
   tree.shape(g.begin, n, leaf);
   tree.bound(charges.columns(), charges.moves());
-  sorted = !tree.is_ordered();
+  const ClusterTree& found = tree;
+  neighbours = mean_neighbours(found);
+  sorted = neighbours > worth_sorting || !found.is_ordered();
   if (!sorted) return;
-  const Cluster& all = tree.clusters()[0];
-  const ChargeColumns c = charges.columns();
-  const double size = std::max({all.high[0] - all.low[0], all.high[1] - all.low[1],
-                                all.high[2] - all.low[2], 1e-300});
-  const double cells = 0x1fffff / size;
-  keys_.resize(n), order_.resize(n);
-  for (std::size_t i = 0; i < n; ++i) {
-    const auto cell = [&](const double* column, int k) {
-      return static_cast<std::uint64_t>(
-          (column[g.begin + i] * ExpansionKernel::unit - all.low[k]) * cells);
-    };
-    keys_[i] = {interleaved(cell(c.x, 0), cell(c.y, 1), cell(c.z, 2)),
-                static_cast<std::uint32_t>(i)};
-  }
-  std::ranges::sort(keys_);
-  for (std::size_t i = 0; i < n; ++i) order_[i] = keys_[i].second;
+  sort(charges.columns());
   charges.reorder(group, order_);
   tree.bound(charges.columns(), charges.moves());
+  neighbours = mean_neighbours(found);
+}
+
+// Halves each cluster of the tree across its longest side, level after level: a few charges far away
+// stretch the few clusters that they are in.
+void Clusters::sort(const ChargeColumns& c) {
+  const std::size_t begin = tree.begin(), n = tree.charges();
+  points_.resize(n), order_.resize(n);
+  for (std::size_t i = 0; i < n; ++i)
+    points_[i] = {{c.x[begin + i], c.y[begin + i], c.z[begin + i]},
+                  static_cast<std::uint32_t>(i)};
+  const auto clusters = std::as_const(tree).clusters();
+  for (std::size_t level = 0; level + 1 < tree.levels().size(); ++level) {
+    const std::size_t first = tree.levels()[level], last = tree.levels()[level + 1];
+#pragma omp parallel for schedule(dynamic) if (n >= parallel_from)
+    for (std::size_t k = first; k < last; ++k) {
+      const Cluster& cluster = clusters[k];
+      if (cluster.is_leaf()) continue;
+      const auto at = [&](std::size_t i) {
+        return points_.begin() + static_cast<std::ptrdiff_t>(i - begin);
+      };
+      const auto from = at(cluster.begin), to = at(tree.end_of(cluster));
+      std::size_t longest = 0;
+      double length = -1;
+      for (std::size_t side = 0; side < 3; ++side) {
+        const auto [low, high] = std::ranges::minmax(
+            std::ranges::subrange(from, to), {}, [&](const Point& p) { return p.r[side]; });
+        if (high.r[side] - low.r[side] > length)
+          longest = side, length = high.r[side] - low.r[side];
+      }
+      std::ranges::nth_element(from, at(clusters[cluster.child].end), to, {},
+                               [&](const Point& p) { return p.r[longest]; });
+    }
+  }
+  for (std::size_t i = 0; i < n; ++i) order_[i] = points_[i].number;
 }
 
 } // namespace ehdjet::detail

@@ -36,30 +36,44 @@ double ratio(long double a, long double b) {
 
 } // namespace
 
-CoulombErrorSample sampled_error(ConstVec3View r, std::span<const double> q,
-                                 ConstVec3View force, std::size_t max_targets) {
+CoulombErrorSample sampled_error(const PointCharges& charges, ConstVec3View force,
+                                 ToleranceNorm norm, std::size_t max_targets) {
+  const auto& [r, q, moves] = charges;
   const std::size_t n = q.size();
   EHDJET_EXPECTS(r.x.size() == n && r.y.size() == n && r.z.size() == n);
   EHDJET_EXPECTS(force.x.size() == n && force.y.size() == n && force.z.size() == n);
-  EHDJET_EXPECTS(max_targets > 0);
+  EHDJET_EXPECTS(max_targets > 0 && (moves.empty() || moves.size() == n));
 
-  std::vector<TargetError> errors(std::min(n, max_targets));
+  std::vector<std::size_t> candidates; // if not all are
+  const bool some = norm == ToleranceNorm::moving && !moves.empty();
+  for (std::size_t i = 0; some && i < n; ++i)
+    if (moves[i] != 0) candidates.push_back(i);
+  const std::size_t among = some ? candidates.size() : n;
+  std::vector<TargetError> errors(std::min(among, max_targets));
   const std::size_t targets = errors.size();
 #pragma omp parallel for schedule(static) if (targets * n >= parallel_from_pairs)
-  for (std::size_t k = 0; k < targets; ++k)
-    errors[k] = error_of(k * n / targets, r, q, force);
+  for (std::size_t k = 0; k < targets; ++k) {
+    const std::size_t i = k * among / targets;
+    errors[k] = error_of(some ? candidates[i] : i, r, q, force);
+  }
 
-  long double error2 = 0, force2 = 0;
+  long double error2 = 0, force2 = 0, weaker2 = 0;
   CoulombErrorSample sample{.targets = targets};
-  for (const TargetError& e : errors) {
-    error2 += e.error2;
-    force2 += e.force2;
+  std::ranges::sort(errors, {}, &TargetError::force2);
+  const std::size_t weaker = targets - targets / 10;
+  for (std::size_t k = 0; k < targets; ++k) {
+    const TargetError& e = errors[k];
+    error2 += e.error2, force2 += e.force2;
+    if (k < weaker) weaker2 += e.force2;
     const double worst = ratio(std::sqrt(e.error2), e.pair_sum);
     // a NaN gets in, and then nothing compares as greater
     if (worst > sample.worst_per_target || std::isnan(worst))
       sample.worst_per_target = worst;
   }
   sample.relative_l2 = ratio(std::sqrt(error2), std::sqrt(force2));
+  if (targets > 0)
+    sample.relative_moving = ratio(std::sqrt(error2 / static_cast<long double>(targets)),
+                                   std::sqrt(weaker2 / static_cast<long double>(weaker)));
   return sample;
 }
 

@@ -110,11 +110,11 @@ private:
     const auto [a, b] = pair;
     const Cluster &c = p.targets.clusters()[a], &d = p.sources.clusters()[b];
     const bool mutual = p.is_mutual();
-    if (mutual && a == b) {
-      if (c.is_leaf()) {
-        lists.near.push_back(pair);
-        return;
-      }
+    if (mutual && a == b && c.is_leaf()) {
+      lists.near.push_back(pair);
+    } else if (in_one_place(c, d)) {
+      lists.coincident = true;
+    } else if (mutual && a == b) {
       next({c.child, c.child}), next({c.child + 1, c.child + 1});
       next({c.child, c.child + 1});
     } else if (p.acceptance.two_sided(d, c, mutual)) {

@@ -19,25 +19,46 @@ constexpr double opening = 0.4;
 ForceScale::ForceScale(const ExpansionKernel& kernel, int order)
     : expansions_(kernel, std::min(scale_order, order)) {}
 
-void ForceScale::sample(const ClusterProblem& p) {
-  const std::size_t n = p.targets.charges(), groups = (n + padding - 1) / padding;
+// Evenly spaced along the charges that move.
+void ForceScale::choose_groups(const ClusterProblem& p) {
+  const std::uint8_t* moves = p.charges.moves();
+  const std::size_t begin = p.targets.begin(), end = begin + p.targets.charges();
+  const std::size_t groups = (end - begin + padding - 1) / padding;
+  const auto moving = static_cast<std::size_t>(
+      moves == nullptr ? end - begin : std::count(moves + begin, moves + end, 1));
   const std::size_t sampled =
-      std::min(groups, std::clamp<std::size_t>(n / charges_per_group, 4, most_groups));
-#pragma omp single
-  {
-    squares_.assign(sampled * padding, -1.0);
-    if (ignored_.size() < p.charges.length()) ignored_.resize(p.charges.length());
+      std::min(groups, std::clamp<std::size_t>(moving / charges_per_group, 4, most_groups));
+  groups_.clear();
+  if (moves == nullptr)
+    for (std::size_t k = 0; k < sampled; ++k)
+      groups_.push_back(begin + groups * (2 * k + 1) / (2 * sampled) * padding);
+  std::size_t met = 0, k = 0;
+  for (std::size_t i = begin; moves != nullptr && i < end; ++i) {
+    if (moves[i] == 0 || met++ != moving * (2 * k + 1) / (2 * sampled)) continue;
+    const std::size_t group = i / padding * padding;
+    if (groups_.empty() || groups_.back() != group) groups_.push_back(group);
+    while (k < sampled && moving * (2 * k + 1) / (2 * sampled) < met) ++k;
   }
+  squares_.assign(groups_.size() * padding, -1.0);
+  if (ignored_.size() < p.charges.length()) ignored_.resize(p.charges.length());
+}
+
+void ForceScale::sample(const ClusterProblem& p) {
+#pragma omp single
+  choose_groups(p);
   const ChargeColumns c = p.charges.columns();
   const FieldColumns g = p.charges.field(0);
+  const std::uint8_t* moves = p.charges.moves();
   constexpr double unit = ExpansionKernel::unit;
 #pragma omp for schedule(static)
-  for (std::size_t k = 0; k < sampled; ++k) {
-    const std::size_t begin =
-        p.targets.begin() + groups * (2 * k + 1) / (2 * sampled) * padding;
+  for (std::size_t k = 0; k < groups_.size(); ++k) {
+    const std::size_t begin = groups_[k],
+                      end = std::min(begin + padding,
+                                     p.targets.begin() + p.targets.charges());
     for (double* column : {g.x, g.y, g.z}) std::fill_n(column + begin, padding, 0.0);
     add_field(p, 0, begin);
-    for (std::size_t i = begin; i < std::min(begin + padding, p.targets.begin() + n); ++i) {
+    for (std::size_t i = begin; i < end; ++i) {
+      if (moves != nullptr && moves[i] == 0) continue;
       const double f = c.q[i] / (unit * unit);
       const double fx = f * g.x[i], fy = f * g.y[i], fz = f * g.z[i];
       squares_[k * padding + i - begin] = fx * fx + fy * fy + fz * fz;
@@ -45,13 +66,15 @@ void ForceScale::sample(const ClusterProblem& p) {
   }
 }
 
-double ForceScale::value() {
-  std::erase(squares_, -1.0); // places behind the last charge
+double ForceScale::value(ToleranceNorm norm) {
+  std::erase(squares_, -1.0); // places behind the last charge, and charges that rest
+  if (squares_.empty()) return 0;
   std::ranges::sort(squares_);
-  const std::size_t kept = squares_.size() - squares_.size() / 32;
+  const bool moving = norm == ToleranceNorm::moving;
+  const std::size_t kept = squares_.size() - squares_.size() / (moving ? 10 : 32);
   const double sum = std::accumulate(
       squares_.begin(), squares_.begin() + static_cast<std::ptrdiff_t>(kept), 0.0);
-  return std::sqrt(sum / static_cast<double>(squares_.size()));
+  return std::sqrt(sum / static_cast<double>(moving ? kept : squares_.size()));
 }
 
 void ForceScale::add_field(const ClusterProblem& p, std::uint32_t at, std::size_t begin) {

@@ -70,7 +70,7 @@ constexpr KnownSolver known[] = {
                                           parameters(o, 0.6, 32, 64),
                                           detail::make_fast_multipole());
      }},
-    {{"auto", "the cheapest of these for the present number of beads"},
+    {{"auto", "direct or fmm, whichever is cheaper for the present charges"},
      [](const SolverOptions& o) {
        check(o);
        return detail::make_auto_solver(o);

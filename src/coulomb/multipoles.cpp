@@ -60,4 +60,36 @@ void Multipoles::gather(const ClusterTree& tree, const ChargeColumns& charges) {
     shift_level(expansions_, tree, level, sets_.data(), Shift::upward);
 }
 
+// The power of degree l, sqrt(sum_m |M_l^m|^2), is Q r^l at most: for charges in two places at the
+// ends of the cluster. For a straight piece of a curve it is Q r^l/(l+1), on a ring a third of Q r^l,
+// and the criterion is calibrated on those. The last two degrees, because on a symmetric
+// cluster every other one vanishes.
+void Multipoles::weigh(ClusterTree& tree) const {
+  constexpr double smooth = 0.4, most = 5;
+  const int p = expansions_.numbers.order;
+  const auto clusters = tree.clusters();
+#pragma omp for schedule(static)
+  for (std::size_t k = 0; k < clusters.size(); ++k) {
+    Cluster& c = clusters[k];
+    c.lumped = 1;
+    if (!(c.radius > 0 && c.charge > 0)) continue;
+    const double* set = (*this)[k];
+    double part = 0; // squared
+    double most_power = c.charge * c.charge * power(c.radius * c.radius, p - 1);
+    for (int l = p - 1; l <= p; ++l, most_power *= c.radius * c.radius) {
+      double half = set[real_part(l, 0)] * set[real_part(l, 0)] / 2;
+#pragma omp simd reduction(+ : half)
+      for (std::size_t i = real_part(l, 1); i < real_part(l + 1, 0); ++i)
+        half += set[i] * set[i];
+      // Of the smallest radii no power is left: the worst case.
+      if (!(2 * half <= smooth * smooth * most_power) || most_power < 1e-290)
+        part =
+            std::max(part, most_power < 1e-290 ? 1 : std::min(1.0, 2 * half / most_power));
+    }
+    if (part == 0) continue;
+    part = std::sqrt(part);
+    c.lumped = 1 + (most - 1) * std::max(0.0, (part - smooth) / (1 - smooth));
+  }
+}
+
 } // namespace ehdjet::detail

@@ -10,6 +10,14 @@
 
 namespace ehdjet::detail {
 
+/// x^n, n >= 0.
+inline double power(double x, int n) {
+  double result = 1;
+  for (; n > 0; n /= 2, x *= x)
+    if (n % 2 == 1) result *= x;
+  return result;
+}
+
 struct Displacement {
   double x, y, z;
   [[nodiscard]] double norm() const { return std::sqrt(x * x + y * y + z * z); }
@@ -60,6 +68,9 @@ public:
   }
   /// Leaves from their charges, parents from their children. Every thread of the team.
   void gather(const ClusterTree& tree, const ChargeColumns& charges);
+  /// Tells each cluster how much more its series errs than that of charges that are spread over
+  /// it. Every thread of the team.
+  void weigh(ClusterTree& tree) const;
   [[nodiscard]] const double* operator[](std::size_t cluster) const {
     return sets_.data() + expansions_.set * cluster;
   }

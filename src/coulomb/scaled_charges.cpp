@@ -44,7 +44,8 @@ bool nothing_to_do(std::span<const PointCharges> groups, const Vec3View& force) 
   return nothing;
 }
 
-void ScaledCharges::load(std::span<const PointCharges> groups, std::size_t threads) {
+void ScaledCharges::load(std::span<const PointCharges> groups, std::size_t threads,
+                         bool with_moves) {
   number_ = groups.size();
   double extent = 0, charge = 0;
   std::size_t length = 0;
@@ -57,7 +58,7 @@ void ScaledCharges::load(std::span<const PointCharges> groups, std::size_t threa
     const std::size_t end = length + (c.size() + padding - 1) / padding * padding;
     groups_[g] = {c, length, end, {}};
     length = end;
-    any_rests_ = any_rests_ || !c.moves.empty();
+    any_rests_ = any_rests_ || (with_moves && !c.moves.empty());
   }
   lines_ = length / padding;
   if (charges_.size() < 4 * lines_) charges_.resize(4 * lines_);

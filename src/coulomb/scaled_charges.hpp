@@ -35,7 +35,8 @@ public:
 
   /// Takes over the groups, with room for the fields of so many threads; allocates only if there
   /// was less.
-  void load(std::span<const PointCharges> groups, std::size_t threads);
+  void load(std::span<const PointCharges> groups, std::size_t threads,
+            bool with_moves = false);
   /// Brings a group into another order, which must live until the forces are added.
   void reorder(std::size_t group, std::span<const std::uint32_t> order);
 
@@ -45,7 +46,7 @@ public:
   [[nodiscard]] ChargeColumns columns() const {
     return {column(0), column(1), column(2), column(3)};
   }
-  /// Which charges move, null: all.
+  /// Which charges move, null: all do, or nobody wants to know.
   [[nodiscard]] const std::uint8_t* moves() const {
     return any_rests_ ? moves_.data() : nullptr;
   }

@@ -51,15 +51,17 @@ private:
             Counts& counts) {
     const Cluster &target = p.targets.clusters()[leaf],
                   &cluster = p.sources.clusters()[source];
-    if (p.acceptance.one_sided(cluster, target)) {
+    const bool self = p.is_mutual() && leaf == source;
+    if (!self && in_one_place(cluster, target)) {
+      ++counts.coincident;
+    } else if (p.acceptance.one_sided(cluster, target)) {
       p.expansions.kernel.multipole_to_charges(p.expansions.numbers, p.charges.columns(),
                                                p.charges.field(0), target.begin, target.end,
                                                cluster.centre, gradient(source));
     } else if (!cluster.is_leaf()) {
       feel(p, leaf, cluster.child, counts), feel(p, leaf, cluster.child + 1, counts);
     } else {
-      const auto act =
-          p.is_mutual() && leaf == source ? p.pairs.add_fields : p.pairs.add_fields_one_way;
+      const auto act = self ? p.pairs.add_fields : p.pairs.add_fields_one_way;
       act(p.charges.columns(), p.charges.field(0),
           {target.begin / p.pairs.targets, target.end / p.pairs.targets, 1, cluster.begin,
            cluster.end},

@@ -20,7 +20,7 @@ std::unique_ptr<Simulation> build_simulation(const Scene& scene);
 std::unique_ptr<JetDynamics> build_dynamics(const Scene& scene);
 
 /// What a scene asks of the Coulomb solver.
-SolverOptions solver_options(const CoulombConfig& config,
+SolverOptions solver_options(const SceneConfig& config,
                              const std::optional<CostModel>& costs);
 
 /// The jet at t = 0: nozzle and one bead (model 4), or the given chain.
