@@ -56,15 +56,19 @@ private:
 /// One root and one division a pair, every pair twice.
 class ScalarLoop final : public CoulombSolver {
 public:
-  void add_force(ConstVec3View r, std::span<const double> q, Vec3View force) override {
-    for (std::size_t i = 0; i < q.size(); ++i) {
+  void add_force(const PointCharges& c, Vec3View force) override {
+    add_force_from(c, c, force);
+  }
+  void add_force_from(const PointCharges& sources, const PointCharges& targets,
+                      Vec3View force) override {
+    for (std::size_t i = 0; i < targets.size(); ++i) {
       Vec3 g = Vec3::Zero();
-      for (std::size_t j = 0; j < q.size(); ++j) {
-        const Vec3 d = r[i] - r[j];
+      for (std::size_t j = 0; j < sources.size(); ++j) {
+        const Vec3 d = targets.r[i] - sources.r[j];
         const double r2 = d.squaredNorm();
-        if (r2 > 0) g += q[j] / (r2 * std::sqrt(r2)) * d;
+        if (r2 > 0) g += sources.q[j] / (r2 * std::sqrt(r2)) * d;
       }
-      force.add(i, constants::coulomb * q[i] * g);
+      force.add(i, constants::coulomb * targets.q[i] * g);
     }
   }
   [[nodiscard]] std::size_t coincident_pairs() const override { return 0; }
@@ -77,10 +81,10 @@ void time_force(benchmark::State& state, CoulombSolver& solver, int threads) {
   Jet jet(static_cast<std::size_t>(state.range(0)));
   const int before = omp_get_max_threads();
   omp_set_num_threads(threads);
-  solver.add_force(jet.r(), jet.q, jet.force());
-  const CoulombErrorSample error = sampled_error(jet.r(), jet.q, jet.force());
+  solver.add_force({jet.r(), jet.q}, jet.force());
+  const CoulombErrorSample error = sampled_error({jet.r(), jet.q}, jet.force());
   for (auto _ : state) {
-    solver.add_force(jet.r(), jet.q, jet.force());
+    solver.add_force({jet.r(), jet.q}, jet.force());
     benchmark::DoNotOptimize(jet.fx.data());
     benchmark::ClobberMemory();
   }

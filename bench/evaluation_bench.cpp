@@ -53,7 +53,7 @@ void coulomb_force(benchmark::State& state) {
   const std::span<double> all(f);
   const std::size_t n = jet.beads();
   for (auto _ : state) {
-    solver->add_force(jet.columns().position(), jet.charge,
+    solver->add_force({jet.columns().position(), jet.charge},
                       {all.subspan(0, n), all.subspan(n, n), all.subspan(2 * n, n)});
     benchmark::DoNotOptimize(f.data());
   }

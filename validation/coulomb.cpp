@@ -101,7 +101,7 @@ double time_calls(CoulombSolver& solver, const Charges& c, Force& force, double 
   for (int call = 0; spent < at_least || (call < 2 && spent < 1); ++call) {
     force.clear();
     const auto start = Clock::now();
-    solver.add_force(c.r(), c.q, force.view());
+    solver.add_force({c.r(), c.q}, force.view());
     const double time = std::chrono::duration<double>(Clock::now() - start).count();
     best = std::min(best, time), spent += time;
   }
@@ -335,7 +335,7 @@ void closed_forms(Suite& suite) {
       const auto measure = [&](const std::string& solver, std::optional<double> tolerance) {
         force.clear();
         make_coulomb_solver({.solver = solver, .tolerance = tolerance.value_or(1e-6)})
-            ->add_force(form.charges.r(), form.charges.q, force.view());
+            ->add_force({form.charges.r(), form.charges.q}, force.view());
         const double value = form.value(force.view());
         const double error = relative(value, form.exact);
         csv.row(form.name, n, solver, tolerance, value, form.exact, error);

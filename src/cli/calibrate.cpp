@@ -31,7 +31,7 @@ void calibrate(const CalibrateOptions& options) {
   use_threads(options.threads);
   TextOutput output(options.output,
                     options.force); // an existing file is refused before the measurement
-  fmt::print(stderr, "timing the Coulomb solvers, about half a minute\n");
+  fmt::print(stderr, "timing the Coulomb solvers, about a minute\n");
   const CostModel model = CostModel::measured(options.simd);
   output.print("{}",
                calibration_text(model, fmt::format("{} threads, {}", omp_get_max_threads(),
@@ -39,8 +39,9 @@ void calibrate(const CalibrateOptions& options) {
   output.close();
   fmt::print("direct sum up to\n");
   for (const double tolerance : {1e-2, 1e-3, 1e-6, 1e-9, 1e-12})
-    fmt::print("  {:>9} beads at a tolerance of {:g}\n", model.crossover(tolerance),
-               tolerance);
+    fmt::print(
+        "  {:>9} beads of a jet, {:>9} charges that fill space, at a tolerance of {:g}\n",
+        model.crossover(tolerance), model.crossover(tolerance, 1), tolerance);
   fmt::print("written to {}; use it with --calibration {}\n", options.output,
              options.output);
 }

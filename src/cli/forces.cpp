@@ -15,7 +15,10 @@
 #include <cmath>
 #include <cstddef>
 #include <fmt/format.h>
+#include <functional>
+#include <map>
 #include <memory>
+#include <numeric>
 #include <optional>
 #include <string>
 #include <sys/resource.h>
@@ -30,6 +33,7 @@ namespace {
 struct ForcesOptions {
   std::string beads, output, calibration, solver = "direct";
   std::optional<double> tolerance;
+  ToleranceNorm norm = ToleranceNorm::global;
   std::optional<std::size_t> threads;
   int repeat = 1;
   bool force = false;
@@ -64,9 +68,29 @@ double median(std::vector<double> v) {
   return (*middle + *std::max_element(v.begin(), middle)) / 2;
 }
 
+/// A tolerance of |F| over all charges says little about most of them if a few have nearly all of it.
+void warn_of_the_strongest(ConstVec3View force) {
+  constexpr double nearly_all = 0.9;
+  std::vector<double> square(force.size());
+  for (std::size_t i = 0; i < square.size(); ++i) square[i] = force[i].squaredNorm();
+  const std::size_t few = square.size() / 50;
+  if (few == 0) return;
+  const auto weaker = square.begin() + static_cast<std::ptrdiff_t>(few);
+  std::ranges::nth_element(square, weaker, std::greater{});
+  const double strong = std::accumulate(square.begin(), weaker, 0.0),
+               all = std::accumulate(weaker, square.end(), strong);
+  if (strong > nearly_all * all)
+    fmt::print(
+        stderr,
+        "ehdjet: {} of {} charges have {:.3g} % of |F|^2, to which the tolerance refers: "
+        "the force on the others may be wrong by more. --norm per-bead keeps the tolerance "
+        "for each charge\n",
+        few, square.size(), 100 * strong / all);
+}
+
 void forces(const ForcesOptions& options) {
   use_threads(options.threads);
-  SolverOptions solver_options{.solver = options.solver};
+  SolverOptions solver_options{.solver = options.solver, .norm = options.norm};
   if (options.tolerance) solver_options.tolerance = *options.tolerance;
   if (!options.calibration.empty())
     solver_options.costs = read_calibration(options.calibration);
@@ -81,7 +105,7 @@ void forces(const ForcesOptions& options) {
   for (int i = 0; i < options.repeat; ++i) {
     for (auto* f : {&fx, &fy, &fz}) std::ranges::fill(*f, 0.0);
     const auto start = std::chrono::steady_clock::now();
-    solver->add_force(c.positions(), c.q, force);
+    solver->add_force({c.positions(), c.q}, force);
     seconds.push_back(
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
   }
@@ -90,9 +114,11 @@ void forces(const ForcesOptions& options) {
     fmt::print(stderr, "ehdjet: {} pairs of charges at zero distance were skipped\n",
                solver->coincident_pairs());
 
-  CoulombErrorSample
-      error; // stays zero for the direct sum, against which errors are measured
-  if (solver->name() != "direct") error = sampled_error(c.positions(), c.q, force);
+  CoulombErrorSample error; // the direct sum is what errors are measured against
+  if (solver->name() != "direct") {
+    error = sampled_error({c.positions(), c.q}, force, options.norm);
+    if (options.norm == ToleranceNorm::global) warn_of_the_strongest(force);
+  }
   if (solver->name() == "auto") fmt::print(stderr, "{}\n", solver->description());
   if (output) {
     output->print("fx,fy,fz\n");
@@ -125,8 +151,15 @@ void add_forces_command(CLI::App& app) {
       ->capture_default_str();
   command
       ->add_option("--tolerance", options->tolerance,
-                   "Relative L2 error of the net force that is allowed")
+                   "Relative error of the force that is allowed")
       ->check(CLI::Range(0.0, 1.0));
+  command
+      ->add_option(
+          "--norm", options->norm,
+          "What the error is relative to: global, |F| over all charges; per-bead, what "
+          "acts on each charge")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, ToleranceNorm>{
+          {"global", ToleranceNorm::global}, {"per-bead", ToleranceNorm::per_bead}}));
   add_calibration_option(*command, options->calibration);
   add_threads_option(*command, options->threads);
   command

@@ -4,9 +4,12 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <fmt/format.h>
 #include <utility>
 #include <vector>
+
+#include "crowding.hpp"
 
 namespace ehdjet::detail {
 namespace {
@@ -20,30 +23,40 @@ public:
       : options_(std::move(options))
       , costs_(options_.costs ? *options_.costs : CostModel::shipped(options_.simd)) {}
 
-  void add_force(ConstVec3View r, std::span<const double> q, Vec3View force) override {
-    choose(q.size());
-    solvers_[chosen_]->add_force(r, q, force);
+  void add_force(const PointCharges& charges, Vec3View force) override {
+    choose(charges);
+    used_ = chosen_;
+    solver(used_).add_force(charges, force);
   }
-  [[nodiscard]] double energy(ConstVec3View r, std::span<const double> q) override {
-    choose(q.size());
-    return solvers_[chosen_]->energy(r, q);
+  /// By the number of pairs, and by the larger of both sets; the choice for `add_force` stays.
+  void add_force_from(const PointCharges& sources, const PointCharges& targets,
+                      Vec3View force) override {
+    const auto [fewer, more] = std::minmax(sources.size(), targets.size());
+    const double pairs = 2 * static_cast<double>(fewer) * static_cast<double>(more);
+    used_ = costs_.cost("direct", static_cast<std::size_t>(std::sqrt(pairs)),
+                        options_.tolerance)
+                    <= costs_.cost("fmm", more, options_.tolerance, crowding_)
+                ? 0
+                : 1;
+    solver(used_).add_force_from(sources, targets, force);
+  }
+  [[nodiscard]] double energy(ConstVec3View r, std::span<const double> q) const override {
+    return make(costs_.cheapest(q.size(), options_.tolerance, crowding_))->energy(r, q);
   }
   [[nodiscard]] std::size_t coincident_pairs() const override {
-    return solvers_[chosen_] ? solvers_[chosen_]->coincident_pairs() : 0;
+    return solvers_[used_] ? solvers_[used_]->coincident_pairs() : 0;
   }
   [[nodiscard]] CoulombAccuracy accuracy() const override {
     return {.tolerance = options_.tolerance, .norm = options_.norm};
   }
   [[nodiscard]] std::string_view name() const override { return "auto"; }
   [[nodiscard]] std::string description() const override {
-    if (charges_ == 0) return "auto, not yet called";
+    if (charges_ == 0 || !solvers_[chosen_]) return "auto, not yet called";
     const double direct = costs_.cost("direct", charges_, options_.tolerance);
     return fmt::format("auto: {}, at {} charges {:.2g} of the direct sum's time by the "
                        "cost model; {} switches",
                        solvers_[chosen_]->description(), charges_,
-                       costs_.cost(priced_solvers[chosen_], charges_, options_.tolerance)
-                           / direct,
-                       switches_);
+                       price_of(chosen_) / direct, switches_);
   }
   void tighten() override {
     ++tightened_;
@@ -51,45 +64,53 @@ public:
       if (solver) solver->tighten();
   }
   void archive(const Archive& a) override {
-    a("chosen", chosen_), a("charges", charges_);
-    a("switches", switches_), a("tightened", tightened_);
+    a("chosen", chosen_), a("charges", charges_), a("crowding", crowding_);
+    a("calls", calls_), a("switches", switches_), a("tightened", tightened_);
     if (!a.is_reading()) return;
     if (chosen_ >= solvers_.size())
       throw InputError("the checkpoint is damaged: there is no such Coulomb solver");
     for (auto& solver : solvers_) solver.reset();
-    if (charges_ > 0) make_chosen();
+    if (charges_ > 0) (void)solver(chosen_);
   }
 
 private:
-  void choose(std::size_t n) {
-    if (n == charges_ && solvers_[chosen_]) return;
-    const std::string_view best = costs_.cheapest(n, options_.tolerance);
-    const auto index = static_cast<std::size_t>(std::ranges::find(priced_solvers, best)
-                                                - priced_solvers.begin());
-    const double price = costs_.cost(best, n, options_.tolerance);
-    const bool worth =
-        charges_ == 0
-        || price < worth_switching
-                       * costs_.cost(priced_solvers[chosen_], n, options_.tolerance);
-    charges_ = n;
-    if (worth && (index != chosen_ || !solvers_[index])) {
-      if (solvers_[chosen_]) ++switches_;
-      chosen_ = index;
-    }
-    if (!solvers_[chosen_]) make_chosen();
+  [[nodiscard]] double price_of(std::size_t k) const {
+    return costs_.cost(priced_solvers[k], charges_, options_.tolerance, crowding_);
   }
-  void make_chosen() {
+  /// Looks at the charges again when their number has changed, and every so often.
+  void choose(const PointCharges& charges) {
+    constexpr std::size_t often = 256;
+    if (charges.size() == charges_ && ++calls_ < often) return;
+    const bool first = charges_ == 0;
+    charges_ = charges.size(), calls_ = 0;
+    if (charges_ == 0) return;
+    crowding_ = look_.of(charges);
+    const std::size_t other = first ? (price_of(0) <= price_of(1) ? 0 : 1) : 1 - chosen_;
+    if (!first && !(price_of(other) < worth_switching * price_of(chosen_))) return;
+    if (!first) ++switches_;
+    chosen_ = other;
+  }
+  [[nodiscard]] std::unique_ptr<CoulombSolver> make(std::string_view name) const {
     SolverOptions options = options_;
-    options.solver = priced_solvers[chosen_];
+    options.solver = name;
     options.check_every.reset();
-    solvers_[chosen_] = make_coulomb_solver(options);
-    for (std::size_t i = 0; i < tightened_; ++i) solvers_[chosen_]->tighten();
+    return make_coulomb_solver(options);
+  }
+  CoulombSolver& solver(std::size_t k) {
+    if (!solvers_[k]) {
+      solvers_[k] = make(priced_solvers[k]);
+      for (std::size_t i = 0; i < tightened_; ++i) solvers_[k]->tighten();
+    }
+    return *solvers_[k];
   }
 
   SolverOptions options_;
   CostModel costs_;
   std::array<std::unique_ptr<CoulombSolver>, priced_solvers.size()> solvers_; // as needed
-  std::size_t chosen_ = 0, charges_ = 0, switches_ = 0, tightened_ = 0;
+  Crowding look_;
+  double crowding_ = 0;
+  std::size_t chosen_ = 0, used_ = 0; ///< for `add_force`; by the last call
+  std::size_t charges_ = 0, calls_ = 0, switches_ = 0, tightened_ = 0;
 };
 
 } // namespace

@@ -17,20 +17,24 @@ public:
       : solver_(std::move(solver))
       , every_(every) {}
 
-  void add_force(ConstVec3View r, std::span<const double> q, Vec3View force) override {
+  void add_force(const PointCharges& charges, Vec3View force) override {
     if (calls_++ % every_ != 0) {
-      solver_->add_force(r, q, force);
+      solver_->add_force(charges, force);
       return;
     }
-    const std::size_t n = q.size();
+    const std::size_t n = charges.size();
     for (auto& column : force_) column.assign(n, 0.0);
     auto& [x, y, z] = force_;
-    solver_->add_force(r, q, {x, y, z});
-    if (n > 1) check(r, q, {x, y, z});
+    solver_->add_force(charges, {x, y, z});
+    if (n > 1) check(charges, {x, y, z});
     for (std::size_t i = 0; i < n; ++i)
       force.x[i] += x[i], force.y[i] += y[i], force.z[i] += z[i];
   }
-  [[nodiscard]] double energy(ConstVec3View r, std::span<const double> q) override {
+  void add_force_from(const PointCharges& sources, const PointCharges& targets,
+                      Vec3View force) override {
+    solver_->add_force_from(sources, targets, force);
+  }
+  [[nodiscard]] double energy(ConstVec3View r, std::span<const double> q) const override {
     return solver_->energy(r, q);
   }
   [[nodiscard]] std::size_t coincident_pairs() const override {
@@ -52,13 +56,11 @@ public:
   [[nodiscard]] std::optional<CoulombChecks> checks() const override { return checks_; }
 
 private:
-  static constexpr std::size_t targets = 64;
+  static constexpr std::size_t sampled = 64;
 
-  void check(ConstVec3View r, std::span<const double> q, ConstVec3View force) {
+  void check(const PointCharges& charges, ConstVec3View force) {
     const auto [tolerance, norm] = solver_->accuracy();
-    const CoulombErrorSample sample = sampled_error(r, q, force, targets);
-    checks_.last =
-        norm == ToleranceNorm::global ? sample.relative_l2 : sample.worst_per_target;
+    checks_.last = sampled_error(charges, force, norm, sampled).in(norm);
     checks_.largest = std::max(checks_.largest, checks_.last);
     ++checks_.number;
     // The direct sum promises 0 and has its round-off.

@@ -1,6 +1,7 @@
 #include "cluster_tree.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "expansion_kernel.hpp"
@@ -17,12 +18,13 @@ double norm(double x, double y, double z) {
 
 } // namespace
 
-void ClusterTree::shape(std::size_t n, std::size_t leaf) {
-  if (n == n_ && leaf == leaf_) return;
-  n_ = n, leaf_ = leaf;
+void ClusterTree::shape(std::size_t first, std::size_t n, std::size_t leaf) {
+  if (first == begin_ && n == n_ && leaf == leaf_) return;
+  begin_ = first, n_ = n, leaf_ = leaf;
   clusters_.clear(), leaves_.clear(), levels_.clear();
   const std::size_t length = (n + padding - 1) / padding * padding;
-  clusters_.push_back({.end = static_cast<std::uint32_t>(length)});
+  clusters_.push_back({.begin = static_cast<std::uint32_t>(first),
+                       .end = static_cast<std::uint32_t>(first + length)});
   levels_.push_back(0);
   std::size_t level_end = 1;
   for (std::size_t i = 0; i < clusters_.size(); ++i) {
@@ -43,10 +45,10 @@ void ClusterTree::shape(std::size_t n, std::size_t leaf) {
   levels_.push_back(static_cast<std::uint32_t>(clusters_.size()));
 }
 
-void ClusterTree::bound(const ChargeColumns& charges) {
+void ClusterTree::bound(const ChargeColumns& charges, const std::uint8_t* moves) {
 #pragma omp parallel for schedule(static) if (n_ >= parallel_from)
   for (std::size_t i = 0; i < leaves_.size(); ++i)
-    bound_leaf(charges, clusters_[leaves_[i]]);
+    bound_leaf(charges, moves, clusters_[leaves_[i]]);
   for (std::size_t level = levels_.size() - 1; level-- > 0;) {
     const std::size_t begin = levels_[level], end = levels_[level + 1];
 #pragma omp parallel for schedule(static) if (end - begin >= parallel_from_parents)
@@ -56,8 +58,9 @@ void ClusterTree::bound(const ChargeColumns& charges) {
   }
 }
 
-void ClusterTree::bound_leaf(const ChargeColumns& charges, Cluster& leaf) const {
-  const std::size_t end = std::min<std::size_t>(leaf.end, n_);
+void ClusterTree::bound_leaf(const ChargeColumns& charges, const std::uint8_t* moves,
+                             Cluster& leaf) const {
+  const std::size_t end = end_of(leaf);
   const double* columns[3] = {charges.x, charges.y, charges.z};
   for (int k = 0; k < 3; ++k) {
     double low = columns[k][leaf.begin], high = low;
@@ -67,7 +70,7 @@ void ClusterTree::bound_leaf(const ChargeColumns& charges, Cluster& leaf) const 
     leaf.centre[k] = (leaf.low[k] + leaf.high[k]) / 2;
   }
   double square = 0;
-  leaf.charge = leaf.square = 0;
+  leaf.charge = leaf.square = leaf.moving = 0;
   for (std::size_t i = leaf.begin; i < end; ++i) {
     double d2 = 0;
     for (int k = 0; k < 3; ++k) {
@@ -76,9 +79,11 @@ void ClusterTree::bound_leaf(const ChargeColumns& charges, Cluster& leaf) const 
     }
     square = std::max(square, d2);
     leaf.charge += std::abs(charges.q[i]);
-    leaf.square += charges.q[i] * charges.q[i];
+    if (moves != nullptr && moves[i] == 0) continue;
+    leaf.square += charges.q[i] * charges.q[i], ++leaf.moving;
   }
-  leaf.square /= static_cast<double>(end - leaf.begin);
+  if (leaf.moving > 0) leaf.square /= leaf.moving;
+  if (moves == nullptr) leaf.moving = leaf.end - leaf.begin;
   leaf.radius = std::sqrt(square);
 }
 
@@ -99,8 +104,56 @@ void ClusterTree::bound_parent(const Cluster& a, const Cluster& b, Cluster& pare
                         / 2;
   parent.radius = std::min(reach, corner);
   parent.charge = a.charge + b.charge;
-  const double na = a.end - a.begin, nb = b.end - b.begin;
-  parent.square = (a.square * na + b.square * nb) / (na + nb);
+  parent.moving = a.moving + b.moving;
+  parent.square =
+      parent.moving > 0 ? (a.square * a.moving + b.square * b.moving) / parent.moving : 0;
+}
+
+namespace {
+
+constexpr std::size_t part_of_leaves = 64; // that are looked at together
+
+/// Leaves of a curve are much smaller than those of charges that fill space with as many leaves;
+/// leaves of charges in no order are as large as all of them together. Tenths at both ends are left
+/// out: a charge far away may be in any leaf.
+bool are_ordered(std::span<const Cluster> clusters, std::span<const std::uint32_t> leaves) {
+  std::array<double, part_of_leaves> values;
+  const auto number = static_cast<double>(leaves.size());
+  const auto of_leaves = [&](double part, auto value) { // a quantile
+    const auto end =
+        std::ranges::transform(leaves, values.begin(), [&](std::uint32_t leaf) {
+          return value(clusters[leaf]);
+        }).out;
+    const auto at = values.begin() + static_cast<std::ptrdiff_t>(part * (number - 1));
+    std::nth_element(values.begin(), at, end);
+    return *at;
+  };
+  double square = 0;
+  for (int k = 0; k < 3; ++k) {
+    const double low = of_leaves(0.1, [k](const Cluster& c) { return c.low[k]; });
+    const double high = of_leaves(0.9, [k](const Cluster& c) { return c.high[k]; });
+    square += (high - low) * (high - low);
+  }
+  const double leaf = of_leaves(0.5, [](const Cluster& c) { return c.radius; });
+  return leaf <= 1.5 * std::sqrt(square) / 2 / std::cbrt(number);
+}
+
+} // namespace
+
+// Charges may be in order from place to place and in none within each, so that some parts are
+// looked at one by one.
+bool ClusterTree::is_ordered() const {
+  constexpr std::size_t too_few = 16, most_parts = 8;
+  if (leaves_.size() < too_few) return true;
+  const std::span<const std::uint32_t> leaves(leaves_);
+  const std::size_t length = std::min(part_of_leaves, leaves.size()),
+                    parts = std::min(most_parts, leaves.size() / length);
+  std::size_t ordered = 0;
+  for (std::size_t k = 0; k < parts; ++k) {
+    const std::size_t begin = parts == 1 ? 0 : (leaves.size() - length) * k / (parts - 1);
+    if (are_ordered(clusters_, leaves.subspan(begin, length))) ++ordered;
+  }
+  return 2 * ordered > parts;
 }
 
 } // namespace ehdjet::detail

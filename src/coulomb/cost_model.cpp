@@ -12,12 +12,6 @@
 namespace ehdjet {
 namespace {
 
-std::size_t index_of(std::string_view solver) {
-  const auto found = std::ranges::find(priced_solvers, solver);
-  EHDJET_EXPECTS(found != priced_solvers.end());
-  return static_cast<std::size_t>(found - priced_solvers.begin());
-}
-
 // Interval of a grid that x is in or next to, and where in it, in logarithms.
 struct Place {
   std::size_t i;
@@ -29,31 +23,45 @@ Place place_of(const std::vector<double>& grid, double x) {
   return {i, std::log(x / grid[i]) / std::log(grid[i + 1] / grid[i])};
 }
 
-// A jet like that of scenes/pvp.toml: straight, then a helix that widens.
-struct TrialJet {
+struct Trial {
   std::vector<double> x, y, z, q, fx, fy, fz;
-  explicit TrialJet(std::size_t n)
+  explicit Trial(std::size_t n)
       : q(n, 1e-10)
       , fx(n)
       , fy(n)
-      , fz(n) {
-    for (std::size_t i = 0; i < n; ++i) {
-      // Arc length grows about with the square of the parameter.
-      const double t = std::sqrt(static_cast<double>(i + 1) / static_cast<double>(n));
-      const double wide = std::max(0.0, t - 0.1), angle = 40 * std::numbers::pi * wide;
-      x.push_back(0.16 * t);
-      y.push_back(0.044 * wide * std::cos(angle)),
-          z.push_back(0.044 * wide * std::sin(angle));
-    }
-  }
+      , fz(n) {}
+  void add(double a, double b, double c) { x.push_back(a), y.push_back(b), z.push_back(c); }
 };
 
-double seconds_per_call(CoulombSolver& solver, TrialJet& jet) {
+// A jet like that of scenes/pvp.toml: straight, then a helix that widens.
+Trial trial_jet(std::size_t n) {
+  Trial jet(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    // Arc length grows about with the square of the parameter.
+    const double t = std::sqrt(static_cast<double>(i + 1) / static_cast<double>(n));
+    const double wide = std::max(0.0, t - 0.1), angle = 40 * std::numbers::pi * wide;
+    jet.add(0.16 * t, 0.044 * wide * std::cos(angle), 0.044 * wide * std::sin(angle));
+  }
+  return jet;
+}
+
+// A cube, filled by Kronecker's sequence.
+Trial trial_cloud(std::size_t n) {
+  Trial cloud(n);
+  const auto part = [](double v) { return v - std::floor(v); };
+  for (std::size_t i = 0; i < n; ++i) {
+    const auto k = static_cast<double>(i);
+    cloud.add(part(0.8191725134 * k), part(0.6710436067 * k), part(0.5497004779 * k));
+  }
+  return cloud;
+}
+
+double seconds_per_call(CoulombSolver& solver, Trial& c) {
   using Clock = std::chrono::steady_clock;
   double best = 1e300, spent = 0;
   for (int calls = 0; calls < 3 || (spent < 0.02 && calls < 1000); ++calls) {
     const auto start = Clock::now();
-    solver.add_force({jet.x, jet.y, jet.z}, jet.q, {jet.fx, jet.fy, jet.fz});
+    solver.add_force({{c.x, c.y, c.z}, c.q}, {c.fx, c.fy, c.fz});
     const double time = std::chrono::duration<double>(Clock::now() - start).count();
     best = std::min(best, time), spent += time;
     if (time > 0.3) break;
@@ -68,31 +76,35 @@ constexpr std::array<double, 8> grid_tolerances{1e-12, 1e-10, 1e-8, 1e-6,
 
 } // namespace
 
-double CostModel::cost(std::string_view solver, std::size_t n, double tolerance) const {
-  const auto& s = seconds[index_of(solver)];
+double CostModel::cost(std::string_view solver, std::size_t n, double tolerance,
+                       double crowding) const {
+  EHDJET_EXPECTS(std::ranges::find(priced_solvers, solver) != priced_solvers.end());
   const Place c = place_of(charges, static_cast<double>(std::max<std::size_t>(n, 1)));
+  const auto along = [&](const std::vector<double>& s, std::size_t row) {
+    const double* at = s.data() + row * charges.size() + c.i;
+    return std::log(at[0]) + c.part * (std::log(at[1]) - std::log(at[0]));
+  };
+  if (solver == "direct") return std::exp(along(direct, 0));
   const Place t =
       place_of(tolerances, std::clamp(tolerance, tolerances.front(), tolerances.back()));
-  const auto at = [&](std::size_t i, std::size_t j) {
-    return std::log(s[i * charges.size() + j]);
+  const auto of = [&](const std::vector<double>& s) {
+    return along(s, t.i) + t.part * (along(s, t.i + 1) - along(s, t.i));
   };
-  const auto along = [&](std::size_t i) {
-    return at(i, c.i) + c.part * (at(i, c.i + 1) - at(i, c.i));
-  };
-  return std::exp(along(t.i) + t.part * (along(t.i + 1) - along(t.i)));
+  return std::exp((1 - crowding) * of(jet) + crowding * of(cloud));
 }
 
-std::string_view CostModel::cheapest(std::size_t n, double tolerance) const {
+std::string_view CostModel::cheapest(std::size_t n, double tolerance,
+                                     double crowding) const {
   return *std::ranges::min_element(priced_solvers, {}, [&](std::string_view solver) {
-    return cost(solver, n, tolerance);
+    return cost(solver, n, tolerance, crowding);
   });
 }
 
-std::size_t CostModel::crossover(double tolerance) const {
+std::size_t CostModel::crossover(double tolerance, double crowding) const {
   std::size_t low = 1, high = 1'000'000'000;
   while (high - low > 1) {
     const std::size_t middle = low + (high - low) / 2;
-    (cheapest(middle, tolerance) == "direct" ? low : high) = middle;
+    (cheapest(middle, tolerance, crowding) == "direct" ? low : high) = middle;
   }
   return high;
 }
@@ -101,29 +113,23 @@ CostModel CostModel::measured(SimdLevel level) {
   CostModel model;
   model.charges.assign(grid_charges.begin(), grid_charges.end());
   model.tolerances.assign(grid_tolerances.begin(), grid_tolerances.end());
-  std::vector<TrialJet> jets;
-  jets.reserve(grid_charges.size());
-  for (const double n : grid_charges) jets.emplace_back(static_cast<std::size_t>(n));
-  for (std::size_t k = 0; k < priced_solvers.size(); ++k) {
-    for (const double tolerance : grid_tolerances) {
-      if (priced_solvers[k] == "direct"
-          && !model.seconds[k].empty()) { // whatever the tolerance
-        model.seconds[k].insert(model.seconds[k].end(), model.seconds[k].begin(),
-                                model.seconds[k].begin() + grid_charges.size());
-        continue;
-      }
-      const auto solver = make_coulomb_solver(SolverOptions{
-          .solver = std::string(priced_solvers[k]), .tolerance = tolerance, .simd = level});
-      for (TrialJet& jet : jets) {
-        const double n = static_cast<double>(jet.q.size());
-        // Nobody sums 2e5 charges pair by pair: continued from where the sum is quadratic.
-        const bool long_known = priced_solvers[k] == "direct" && n > 2e4;
-        const auto& known = model.seconds[k];
-        model.seconds[k].push_back(
-            long_known ? known.back() * std::pow(n / grid_charges[known.size() - 1], 2)
-                       : seconds_per_call(*solver, jet));
-      }
+  const auto measure = [&](const char* solver, double tolerance, Trial (*make)(std::size_t),
+                           std::vector<double>& seconds) {
+    const auto timed = make_coulomb_solver(
+        SolverOptions{.solver = solver, .tolerance = tolerance, .simd = level});
+    for (const double n : grid_charges) {
+      // Nobody sums 2e5 charges pair by pair: continued from where the sum is quadratic.
+      const bool known = timed->name() == "direct" && n > 2e4;
+      Trial trial = make(known ? 1 : static_cast<std::size_t>(n));
+      seconds.push_back(known ? seconds.back()
+                                    * std::pow(n / grid_charges[seconds.size() - 1], 2)
+                              : seconds_per_call(*timed, trial));
     }
+  };
+  measure("direct", 1e-6, trial_jet, model.direct);
+  for (const double tolerance : grid_tolerances) {
+    measure("fmm", tolerance, trial_jet, model.jet);
+    measure("fmm", tolerance, trial_cloud, model.cloud);
   }
   return model;
 }

@@ -24,54 +24,54 @@ constexpr std::size_t block = 512;
 class DirectSum final : public CoulombSolver {
 public:
   explicit DirectSum(PairKernel kernel)
-      : kernel_(kernel)
-      , charges_(kernel.targets) {}
+      : kernel_(kernel) {}
 
-  void add_force(ConstVec3View r, std::span<const double> q, Vec3View force) override {
-    const std::size_t n = q.size();
-    EHDJET_EXPECTS(r.x.size() == n && r.y.size() == n && r.z.size() == n);
-    EHDJET_EXPECTS(force.x.size() == n && force.y.size() == n && force.z.size() == n);
+  void add_force(const PointCharges& charges, Vec3View force) override {
+    sum({&charges, 1}, charges.size(), force);
+  }
+  void add_force_from(const PointCharges& sources, const PointCharges& targets,
+                      Vec3View force) override {
+    const PointCharges groups[]{sources, targets};
+    sum(groups, std::max(sources.size(), targets.size()), force);
+  }
+  [[nodiscard]] std::size_t coincident_pairs() const override { return coincident_pairs_; }
+  [[nodiscard]] CoulombAccuracy accuracy() const override { return {.tolerance = 0}; }
+  [[nodiscard]] std::string_view name() const override { return "direct"; }
+
+private:
+  void sum(std::span<const PointCharges> groups, std::size_t n, Vec3View force) {
     coincident_pairs_ = 0;
-    if (n == 0) return;
-
+    if (detail::nothing_to_do(groups, force)) return;
     const int threads = n < parallel_from ? 1 : omp_get_max_threads();
-    charges_.reserve(n, static_cast<std::size_t>(threads));
-    charges_.load(r, q);
+    charges_.load(groups, static_cast<std::size_t>(threads));
+    const std::size_t targets = groups.back().size();
     if (threads == 1) {
-      sum_fields(0, 1);
-      charges_.add_forces(1, 0, n, force);
+      sum_fields(0, 1, groups.size() == 1);
+      charges_.add_forces(1, 0, targets, force);
     } else {
 #pragma omp parallel num_threads(threads)
       { // the runtime may grant fewer threads than asked for
         const auto team = static_cast<std::size_t>(omp_get_num_threads());
         const auto thread = static_cast<std::size_t>(omp_get_thread_num());
-        sum_fields(thread, team);
+        sum_fields(thread, team, groups.size() == 1);
 #pragma omp barrier
-        charges_.add_forces(team, n * thread / team, n * (thread + 1) / team, force);
+        charges_.add_forces(team, targets * thread / team, targets * (thread + 1) / team,
+                            force);
       }
     }
-    coincident_pairs_ = charges_.add_close_pairs(r, q, force);
+    coincident_pairs_ = charges_.add_close_pairs(force);
   }
 
-  [[nodiscard]] std::size_t coincident_pairs() const override {
-    return coincident_pairs_;
-  }
-  [[nodiscard]] CoulombAccuracy accuracy() const override {
-    return {.tolerance = 0};
-  }
-  [[nodiscard]] std::string_view name() const override {
-    return "direct";
-  }
-
-private:
   /// The rows of this thread: every `team`-th, so that long and short rows are shared evenly.
-  void sum_fields(std::size_t thread, std::size_t team) {
+  void sum_fields(std::size_t thread, std::size_t team, bool mutual) {
     charges_.clear_field(thread);
-    const std::size_t length = charges_.length();
-    for (std::size_t begin = 0; begin < length; begin += block) {
-      const std::size_t end = std::min(begin + block, length);
-      kernel_.add_fields(charges_.columns(), charges_.field(thread),
-                         {thread, length, team, begin, end}, charges_.close());
+    const auto &from = charges_.sources(), &to = charges_.targets();
+    const auto add = mutual ? kernel_.add_fields : kernel_.add_fields_one_way;
+    for (std::size_t begin = from.begin; begin < from.end; begin += block) {
+      const std::size_t end = std::min(begin + block, from.end);
+      add(charges_.columns(), charges_.field(thread),
+          {to.begin / kernel_.targets + thread, to.end / kernel_.targets, team, begin, end},
+          charges_.close());
     }
   }
 

@@ -2,6 +2,7 @@
 
 #include "ehdjet/core/constants.hpp"
 #include "ehdjet/core/error.hpp"
+#include "ehdjet/coulomb/pair_sum.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -21,19 +22,12 @@ struct TargetError {
 TargetError error_of(std::size_t i, ConstVec3View r, std::span<const double> q,
                      ConstVec3View force) {
   using Real = long double;
-  Real fx = 0, fy = 0, fz = 0, pair_sum = 0;
-  for (std::size_t j = 0; j < q.size(); ++j) {
-    const Real dx = Real(r.x[i]) - r.x[j], dy = Real(r.y[i]) - r.y[j],
-               dz = Real(r.z[i]) - r.z[j];
-    const Real r2 = dx * dx + dy * dy + dz * dz;
-    if (r2 == 0) continue; // the bead itself, or a coincident one
-    const Real f = constants::coulomb * Real(q[i]) * q[j] / r2,
-               f_over_r = f / std::sqrt(r2);
-    fx += f_over_r * dx, fy += f_over_r * dy, fz += f_over_r * dz;
-    pair_sum += std::abs(f);
-  }
+  const PairSum<Real> sum = pair_sum<Real>(r[i], r, q, 0, q.size());
+  const Real factor = constants::coulomb * Real(q[i]);
+  const Real fx = factor * sum.x, fy = factor * sum.y, fz = factor * sum.z;
   const Real ex = force.x[i] - fx, ey = force.y[i] - fy, ez = force.z[i] - fz;
-  return {ex * ex + ey * ey + ez * ez, fx * fx + fy * fy + fz * fz, pair_sum};
+  return {ex * ex + ey * ey + ez * ez, fx * fx + fy * fy + fz * fz,
+          std::abs(factor) * sum.magnitude};
 }
 
 double ratio(long double a, long double b) {
@@ -42,30 +36,44 @@ double ratio(long double a, long double b) {
 
 } // namespace
 
-CoulombErrorSample sampled_error(ConstVec3View r, std::span<const double> q,
-                                 ConstVec3View force, std::size_t max_targets) {
+CoulombErrorSample sampled_error(const PointCharges& charges, ConstVec3View force,
+                                 ToleranceNorm norm, std::size_t max_targets) {
+  const auto& [r, q, moves] = charges;
   const std::size_t n = q.size();
   EHDJET_EXPECTS(r.x.size() == n && r.y.size() == n && r.z.size() == n);
   EHDJET_EXPECTS(force.x.size() == n && force.y.size() == n && force.z.size() == n);
-  EHDJET_EXPECTS(max_targets > 0);
+  EHDJET_EXPECTS(max_targets > 0 && (moves.empty() || moves.size() == n));
 
-  std::vector<TargetError> errors(std::min(n, max_targets));
+  std::vector<std::size_t> candidates; // if not all are
+  const bool some = norm == ToleranceNorm::moving && !moves.empty();
+  for (std::size_t i = 0; some && i < n; ++i)
+    if (moves[i] != 0) candidates.push_back(i);
+  const std::size_t among = some ? candidates.size() : n;
+  std::vector<TargetError> errors(std::min(among, max_targets));
   const std::size_t targets = errors.size();
 #pragma omp parallel for schedule(static) if (targets * n >= parallel_from_pairs)
-  for (std::size_t k = 0; k < targets; ++k)
-    errors[k] = error_of(k * n / targets, r, q, force);
+  for (std::size_t k = 0; k < targets; ++k) {
+    const std::size_t i = k * among / targets;
+    errors[k] = error_of(some ? candidates[i] : i, r, q, force);
+  }
 
-  long double error2 = 0, force2 = 0;
+  long double error2 = 0, force2 = 0, weaker2 = 0;
   CoulombErrorSample sample{.targets = targets};
-  for (const TargetError& e : errors) {
-    error2 += e.error2;
-    force2 += e.force2;
+  std::ranges::sort(errors, {}, &TargetError::force2);
+  const std::size_t weaker = targets - targets / 10;
+  for (std::size_t k = 0; k < targets; ++k) {
+    const TargetError& e = errors[k];
+    error2 += e.error2, force2 += e.force2;
+    if (k < weaker) weaker2 += e.force2;
     const double worst = ratio(std::sqrt(e.error2), e.pair_sum);
     // a NaN gets in, and then nothing compares as greater
     if (worst > sample.worst_per_target || std::isnan(worst))
       sample.worst_per_target = worst;
   }
   sample.relative_l2 = ratio(std::sqrt(error2), std::sqrt(force2));
+  if (targets > 0)
+    sample.relative_moving = ratio(std::sqrt(error2 / static_cast<long double>(targets)),
+                                   std::sqrt(weaker2 / static_cast<long double>(weaker)));
   return sample;
 }
 

@@ -61,14 +61,16 @@ constexpr KnownSolver known[] = {
      [](const SolverOptions& o) { return make_direct_sum(o.simd); }},
     {{"treecode", "Barnes-Hut with multipoles, O(n log n), within a tolerance"},
      [](const SolverOptions& o) {
-       return detail::make_treecode(detail::kernels_of(o.simd), parameters(o, 0.3, 64, 64));
+       return detail::make_cluster_solver(
+           detail::kernels_of(o.simd), parameters(o, 0.3, 64, 64), detail::make_treecode());
      }},
     {{"fmm", "fast multipole method, O(n), within a tolerance"},
      [](const SolverOptions& o) {
-       return detail::make_fast_multipole(detail::kernels_of(o.simd),
-                                          parameters(o, 0.6, 32, 64));
+       return detail::make_cluster_solver(detail::kernels_of(o.simd),
+                                          parameters(o, 0.6, 32, 64),
+                                          detail::make_fast_multipole());
      }},
-    {{"auto", "the cheapest of these for the present number of beads"},
+    {{"auto", "direct or fmm, whichever is cheaper for the present charges"},
      [](const SolverOptions& o) {
        check(o);
        return detail::make_auto_solver(o);

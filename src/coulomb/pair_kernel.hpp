@@ -18,7 +18,8 @@ inline constexpr double padding_distance = 0x1p58;
 inline constexpr std::size_t padding = 8; ///< columns are a multiple of this long
 
 /// A pair is *close* if max(|dx|, |dy|, |dz|) < close_distance, a test free of rounding. The
-/// kernels skip close pairs (r^2 might be subnormal in single precision) and report the tile.
+/// kernels skip close pairs (r^2 might be subnormal in single precision) and report that they have
+/// met one.
 inline constexpr double close_distance = 0x1p-60;
 
 struct FieldColumns {

@@ -1,6 +1,7 @@
 #include "scaled_charges.hpp"
 
 #include "ehdjet/core/constants.hpp"
+#include "ehdjet/core/error.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -27,54 +28,88 @@ double largest_magnitude(std::span<const double> v) {
   return largest;
 }
 
-// True if the pair was coincident.
-bool add_close_pair(ConstVec3View r, std::span<const double> q, std::size_t i,
-                    std::size_t j, Vec3View force) {
-  const Vec3 d = r[i] - r[j];
-  const double size = d.cwiseAbs().maxCoeff();
-  if (size == 0) return true;
-  if (q[i] == 0 || q[j] == 0) return false; // 0 / size^2 could be 0 * inf below
-  const Vec3 u = d / size;
-  const Vec3 f = (constants::coulomb * (q[i] / size)) * (q[j] / size)
-                 / (u.squaredNorm() * u.norm()) * u;
-  force.add(i, f);
-  force.add(j, -f);
-  return false;
-}
-
 } // namespace
 
-void ScaledCharges::reserve(std::size_t n, std::size_t threads) {
-  size_ = n;
-  lines_ = (n + padding - 1) / padding;
-  if (charges_.size() < 4 * lines_) charges_.resize(4 * lines_);
-  if (fields_.size() < 3 * lines_ * threads) fields_.resize(3 * lines_ * threads);
-  if (close_.size() < length()) close_.resize(length());
-  std::fill(close_.begin(), close_.end(), static_cast<unsigned char>(0));
+bool nothing_to_do(std::span<const PointCharges> groups, const Vec3View& force) {
+  bool nothing = false;
+  for (const PointCharges& c : groups) {
+    const std::size_t n = c.size();
+    EHDJET_EXPECTS(c.r.x.size() == n && c.r.y.size() == n && c.r.z.size() == n);
+    EHDJET_EXPECTS(c.moves.empty() || c.moves.size() == n);
+    EHDJET_EXPECTS(n < (std::size_t{1} << 30U));
+    nothing = nothing || n == 0;
+  }
+  const std::size_t n = groups.back().size();
+  EHDJET_EXPECTS(force.x.size() == n && force.y.size() == n && force.z.size() == n);
+  return nothing;
 }
 
-// A difference of scaled coordinates is the scaled difference.
-void ScaledCharges::load(ConstVec3View r, std::span<const double> q) {
-  const std::size_t n = q.size();
-  const double extent =
-      std::max({largest_magnitude(r.x), largest_magnitude(r.y), largest_magnitude(r.z)});
-  const int p_r = scale_exponent(extent, coordinate_exponent);
-  const int p_q = scale_exponent(largest_magnitude(q), 0);
-  const double scale[4] = {std::ldexp(1, p_r), std::ldexp(1, p_r), std::ldexp(1, p_r),
-                           std::ldexp(1, p_q)};
-  const std::span<const double> original[4] = {r.x, r.y, r.z, q};
-  for (std::size_t k = 0; k < 4; ++k) {
-    double* out = column(k);
-    const double *in = original[k].data(), s = scale[k];
-#pragma omp parallel for simd schedule(static) if (n >= parallel_from)
-    for (std::size_t i = 0; i < n; ++i) out[i] = s * in[i];
-    std::fill(out + n, out + length(), 0.0);
+void ScaledCharges::load(std::span<const PointCharges> groups, std::size_t threads,
+                         bool with_moves) {
+  number_ = groups.size();
+  double extent = 0, charge = 0;
+  std::size_t length = 0;
+  any_rests_ = false;
+  for (std::size_t g = 0; g < number_; ++g) {
+    const PointCharges& c = groups[g];
+    extent = std::max({extent, largest_magnitude(c.r.x), largest_magnitude(c.r.y),
+                       largest_magnitude(c.r.z)});
+    charge = std::max(charge, largest_magnitude(c.q));
+    const std::size_t end = length + (c.size() + padding - 1) / padding * padding;
+    groups_[g] = {c, length, end, {}};
+    length = end;
+    any_rests_ = any_rests_ || (with_moves && !c.moves.empty());
   }
-  for (std::size_t i = n; i < length(); ++i)
-    column(0)[i] = padding_distance * static_cast<double>(i - n + 1);
+  lines_ = length / padding;
+  if (charges_.size() < 4 * lines_) charges_.resize(4 * lines_);
+  if (fields_.size() < 3 * lines_ * threads) fields_.resize(3 * lines_ * threads);
+  if (close_.size() < length) close_.resize(length);
+  std::fill(close_.begin(), close_.end(), static_cast<unsigned char>(0));
+  if (any_rests_ && moves_.size() < length) moves_.resize(length);
+
+  // A difference of scaled coordinates is the scaled difference.
+  const int p_r = scale_exponent(extent, coordinate_exponent);
+  const int p_q = scale_exponent(charge, 0);
+  scale_ = std::ldexp(1, p_r), charge_scale_ = std::ldexp(1, p_q);
   // f = q q / r^2 is unscaled by 2^(2 p_r - 2 p_q); the whole of it may be out of range.
   root_unscale_ = std::ldexp(1, std::clamp(p_r - p_q, -1000, 1000));
   energy_exponent_ = p_r - 2 * p_q;
+  std::size_t padded = 0; // charges, each in a place of its own
+  for (std::size_t g = 0; g < number_; ++g) {
+    fill(groups_[g]);
+    for (std::size_t i = groups_[g].begin + groups[g].size(); i < groups_[g].end; ++i) {
+      column(0)[i] = padding_distance * static_cast<double>(++padded);
+      column(1)[i] = column(2)[i] = column(3)[i] = 0;
+    }
+  }
+}
+
+void ScaledCharges::reorder(std::size_t group, std::span<const std::uint32_t> order) {
+  groups_[group].order = order;
+  fill(groups_[group]);
+}
+
+void ScaledCharges::fill(const Group& g) {
+  const PointCharges& c = g.charges;
+  const std::size_t n = c.size();
+  const std::span<const double> original[4] = {c.r.x, c.r.y, c.r.z, c.q};
+  for (std::size_t k = 0; k < 4; ++k) {
+    double* out = column(k) + g.begin;
+    const double *in = original[k].data(), s = k < 3 ? scale_ : charge_scale_;
+    if (g.order.empty()) {
+#pragma omp parallel for simd schedule(static) if (n >= parallel_from)
+      for (std::size_t i = 0; i < n; ++i) out[i] = s * in[i];
+    } else {
+      const std::uint32_t* from = g.order.data();
+#pragma omp parallel for schedule(static) if (n >= parallel_from)
+      for (std::size_t i = 0; i < n; ++i) out[i] = s * in[from[i]];
+    }
+  }
+  if (!any_rests_) return;
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::size_t from = g.order.empty() ? i : g.order[i];
+    moves_[g.begin + i] = c.moves.empty() ? 1 : c.moves[from];
+  }
 }
 
 double ScaledCharges::energy(double scaled) const {
@@ -93,36 +128,26 @@ void ScaledCharges::clear_field(std::size_t thread) {
 
 void ScaledCharges::add_forces(std::size_t team, std::size_t begin, std::size_t end,
                                Vec3View force) {
-  const double* q = column(3);
+  const Group& to = targets();
+  const double* q = column(3) + to.begin;
   const std::span<double> out[3] = {force.x, force.y, force.z};
   for (std::size_t k = 0; k < 3; ++k) {
     for (std::size_t i = begin; i < end; ++i) {
       double g = 0;
       for (std::size_t thread = 0; thread < team; ++thread)
-        g += field(thread).x[k * length() + i];
-      out[k][i] += constants::coulomb * q[i] * g * root_unscale_ * root_unscale_;
+        g += field(thread).x[k * length() + to.begin + i];
+      out[k][to.order.empty() ? i : to.order[i]] +=
+          constants::coulomb * q[i] * g * root_unscale_ * root_unscale_;
     }
   }
 }
 
-std::size_t ScaledCharges::add_close_pairs(ConstVec3View r, std::span<const double> q,
-                                           Vec3View force) {
-  std::size_t coincident = 0;
-  const ChargeColumns c = columns();
-  const auto apart = [](const double* v, std::size_t i, std::size_t j) {
-    return std::abs(v[i] - v[j]) >= close_distance;
-  };
-  for (std::size_t row = 0; row * tile_ < q.size(); ++row) {
-    if (close_[row] == 0) continue;
-    const std::size_t end = std::min((row + 1) * tile_, q.size());
-    for (std::size_t i = row * tile_; i < end; ++i) {
-      for (std::size_t j = i + 1; j < q.size(); ++j) {
-        if (apart(c.x, i, j) || apart(c.y, i, j) || apart(c.z, i, j)) continue;
-        if (add_close_pair(r, q, i, j, force)) ++coincident;
-      }
-    }
-  }
-  return coincident;
+std::size_t ScaledCharges::add_close_pairs(Vec3View force, bool met_coincident) {
+  if (!met_coincident && std::ranges::find(close_, 1) == close_.end()) return 0;
+  const std::size_t pairs =
+      close_pairs_.add_forces(sources().charges, targets().charges, scale_, force);
+  // Of one group each charge has met itself, and each pair twice.
+  return number_ == 2 ? pairs : (pairs - sources().charges.size()) / 2;
 }
 
 } // namespace ehdjet::detail

@@ -9,17 +9,24 @@ namespace ehdjet {
 
 void CoulombForce::add_force(const Stage& stage, Vec3View force) {
   const std::size_t n = stage.beads();
+  const PointCharges all{stage.columns.position(), stage.charge, stage.moves};
   if (stage.targets.covers(n) && stage.sources.covers(n)) {
-    solver_->add_force(stage.columns.position(), stage.charge, force);
+    solver_->add_force(all, force);
     coincident_pairs_ += solver_->coincident_pairs();
     return;
   }
-  const auto r = stage.columns.position();
-  for (std::size_t i = stage.targets.begin; i < stage.targets.end; ++i)
-    force.add(i,
-              constants::coulomb * stage.charge[i]
-                  * pair_sum(r[i], r, stage.charge, stage.sources.begin, stage.sources.end)
-                        .field());
+  // A bead and itself is a pair at zero distance here: such pairs are not counted.
+  const auto part = [](auto columns, BeadRange beads) {
+    const auto of = [&](auto v) { return v.subspan(beads.begin, beads.end - beads.begin); };
+    return decltype(columns){of(columns.x), of(columns.y), of(columns.z)};
+  };
+  const auto charges = [&](BeadRange b) {
+    const std::size_t size = b.end - b.begin;
+    return PointCharges{part(all.r, b), all.q.subspan(b.begin, size),
+                        all.moves.empty() ? all.moves : all.moves.subspan(b.begin, size)};
+  };
+  solver_->add_force_from(charges(stage.sources), charges(stage.targets),
+                          part(force, stage.targets));
 }
 
 TermAccount CoulombForce::account() const {

@@ -31,9 +31,10 @@ std::vector<double> positive_numbers(const SceneText& text, const std::string& k
   }
   if (expected > 0 && values.size() != expected)
     text.fail(
-        key, fmt::format("{}: {} numbers, must be {}, one for each tolerance and number of "
-                         "charges",
-                         key, values.size(), expected));
+        key,
+        fmt::format("{}: {} numbers, must be {}, one for each number of charges (direct) "
+                    "and tolerance (fmm)",
+                    key, values.size(), expected));
   return values;
 }
 
@@ -53,35 +54,46 @@ CostModel read_calibration(const std::filesystem::path& file) {
     throw InputError(fmt::format("cannot read the calibration {}: {}", file.string(),
                                  in ? "it is a folder" : std::strerror(errno)));
   const SceneText text({std::istreambuf_iterator<char>(in), {}}, file.string(), {});
-  std::set<std::string, std::less<>> known{"charges", "tolerances"};
-  known.insert(priced_solvers.begin(), priced_solvers.end());
-  for (const auto& entry : text.root())
-    if (!known.contains(entry.first.str()))
-      text.fail(entry.first.str(),
-                fmt::format("unknown key {} in a calibration", entry.first.str()));
+  const std::set<std::string, std::less<>> known{"charges", "tolerances", "direct",
+                                                 "fmm_jet", "fmm_cloud"};
+  for (const auto& entry : text.root()) {
+    const std::string key(entry.first.str());
+    if (key == "fmm" || key == "treecode")
+      text.fail(
+          key,
+          fmt::format("{} in a calibration: the file is from an earlier version that had "
+                      "one table for jets and clouds of charges. Write it anew: "
+                      "ehdjet calibrate -o {} --force",
+                      key, file.string()));
+    if (!known.contains(key))
+      text.fail(key, fmt::format("unknown key {} in a calibration", key));
+  }
   CostModel model;
   model.charges = grid(text, "charges");
   model.tolerances = grid(text, "tolerances");
-  for (std::size_t k = 0; k < priced_solvers.size(); ++k)
-    model.seconds[k] = positive_numbers(text, std::string(priced_solvers[k]),
-                                        model.charges.size() * model.tolerances.size());
+  const std::size_t c = model.charges.size(), tc = model.tolerances.size() * c;
+  model.direct = positive_numbers(text, "direct", c);
+  model.jet = positive_numbers(text, "fmm_jet", tc);
+  model.cloud = positive_numbers(text, "fmm_cloud", tc);
   return model;
 }
 
 std::string calibration_text(const CostModel& model, const std::string& comment) {
   std::string text = fmt::format(
-      "# Seconds per force call of each Coulomb solver; measured by "
-      "`ehdjet calibrate`.\n# {}\n"
+      "# Seconds per force call of the Coulomb solvers, for each number of charges, and "
+      "for "
+      "fmm a row\n# for each tolerance; measured by `ehdjet calibrate`.\n# {}\n"
       "charges = [{:g}]\ntolerances = [{:g}]\n",
       comment, fmt::join(model.charges, ", "), fmt::join(model.tolerances, ", "));
-  for (std::size_t k = 0; k < priced_solvers.size(); ++k) {
-    text += fmt::format("{} = [ # a row for each tolerance\n", priced_solvers[k]);
+  const auto add = [&](const char* key, const std::vector<double>& seconds) {
+    text += fmt::format("{} = [\n", key);
     const std::size_t columns = model.charges.size();
-    for (std::size_t i = 0; i < model.seconds[k].size(); ++i)
-      text += fmt::format("{}{:.4g},{}", i % columns == 0 ? "  " : " ", model.seconds[k][i],
+    for (std::size_t i = 0; i < seconds.size(); ++i)
+      text += fmt::format("{}{:.4g},{}", i % columns == 0 ? "  " : " ", seconds[i],
                           (i + 1) % columns == 0 ? "\n" : "");
     text += "]\n";
-  }
+  };
+  add("direct", model.direct), add("fmm_jet", model.jet), add("fmm_cloud", model.cloud);
   return text;
 }
 

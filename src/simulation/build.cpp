@@ -148,16 +148,18 @@ JetState initial_jet(const Scene& scene) {
   return initial_jet(scene, bead_table(scene, *build_dynamics(scene)));
 }
 
-SolverOptions solver_options(const CoulombConfig& c,
+SolverOptions solver_options(const SceneConfig& scene,
                              const std::optional<CostModel>& costs) {
-  SolverOptions options{.solver = c.solver,
-                        .tolerance = c.tolerance,
-                        .norm = c.tolerance_norm,
-                        .order = {},
-                        .opening = c.opening,
-                        .leaf = c.leaf,
-                        .costs = costs,
-                        .check_every = c.check_every};
+  const CoulombConfig& c = *scene.coulomb;
+  SolverOptions options{
+      .solver = c.solver,
+      .tolerance = c.tolerance,
+      .norm = c.norm.value_or(scene.nozzle ? ToleranceNorm::moving : ToleranceNorm::global),
+      .order = {},
+      .opening = c.opening,
+      .leaf = c.leaf,
+      .costs = costs,
+      .check_every = c.check_every};
   if (c.order) options.order = static_cast<int>(*c.order);
   return options;
 }
@@ -177,7 +179,7 @@ std::unique_ptr<JetDynamics> compose_dynamics(const Scene& scene,
   if (c.gravity) dynamics->add(std::make_unique<Gravity>(c.gravity->acceleration));
   if (c.coulomb)
     dynamics->add(std::make_unique<CoulombForce>(
-        make_coulomb_solver(solver_options(*c.coulomb, scene.costs))));
+        make_coulomb_solver(solver_options(c, scene.costs))));
   if (c.surface_tension && c.surface_tension->form == SurfaceTensionForm::paper)
     dynamics->add(std::make_unique<BendingSurfaceTension>(c.surface_tension->coefficient));
   if (c.surface_tension && c.surface_tension->form == SurfaceTensionForm::line)

@@ -84,9 +84,10 @@ std::unique_ptr<CoulombSolver> per_bead() {
 }
 template <auto make, auto pairs, auto expansions>
 std::unique_ptr<CoulombSolver> with_kernels() {
-  return make(
+  return detail::make_cluster_solver(
       {.pairs = pairs(), .expansions = expansions()},
-      {.tolerance = 1e-8, .norm = ToleranceNorm::per_bead, .order = 11, .leaf = 16});
+      {.tolerance = 1e-8, .norm = ToleranceNorm::per_bead, .order = 11, .leaf = 16},
+      make());
 }
 
 } // namespace

@@ -42,7 +42,7 @@ struct Force {
 
 inline Force force_on(const Chain& chain, CoulombSolver& solver) {
   Force force(chain.size());
-  solver.add_force(chain.r(), chain.q, force.view());
+  solver.add_force({chain.r(), chain.q}, force.view());
   return force;
 }
 

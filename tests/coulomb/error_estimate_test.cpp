@@ -4,13 +4,17 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <numeric>
+
 #include "coulomb/reference.hpp"
 
 namespace ehdjet::test {
 namespace {
 
 CoulombErrorSample error_of(const Chain& chain, Force force, std::size_t max_targets) {
-  return sampled_error(chain.r(), chain.q, force.view(), max_targets);
+  return sampled_error({chain.r(), chain.q}, force.view(), ToleranceNorm::global,
+                       max_targets);
 }
 
 TEST(SampledError, a_known_error_is_found_in_both_norms) {
@@ -43,6 +47,29 @@ TEST(SampledError, targets_are_spread_evenly_over_the_chain) {
     }
   }
   EXPECT_EQ(seen, 10U);
+}
+
+TEST(SampledError, of_the_charges_that_move_leaves_the_others_and_the_strongest_out) {
+  Chain chain = random_chain(100, 0, 0);
+  chain.q[7] = 1e3; // has nearly all of |F|^2
+  const std::vector<std::uint8_t> moves = [] {
+    std::vector<std::uint8_t> m(100, 1);
+    for (std::size_t i = 60; i < 100; ++i) m[i] = 0;
+    return m;
+  }();
+  Force force = force_on(chain, *make_direct_sum());
+  std::vector<double> squares;
+  for (std::size_t i = 0; i < 60; ++i) squares.push_back(force[i].squaredNorm());
+  std::ranges::sort(squares);
+  const double mean = std::accumulate(squares.begin(), squares.begin() + 54, 0.0) / 54;
+  force.view().add(80, 1e9 * along); // rests
+  const Vec3 wrong = 1e-3 * std::sqrt(60 * mean) * along;
+  force.view().add(30, wrong);
+  const CoulombErrorSample sample =
+      sampled_error({chain.r(), chain.q, moves}, force.view(), ToleranceNorm::moving);
+  EXPECT_EQ(sample.targets, 60U);
+  EXPECT_NEAR(sample.in(ToleranceNorm::moving), 1e-3, 1e-9);
+  EXPECT_LT(sample.in(ToleranceNorm::global), 1e-4);
 }
 
 TEST(SampledError, a_nan_is_not_lost) {

@@ -15,6 +15,7 @@
 
 #include "coulomb/chains.hpp"
 #include "coulomb/checked_solver.hpp"
+#include "coulomb/crowding.hpp"
 
 namespace ehdjet::test {
 namespace {
@@ -56,7 +57,7 @@ Chain interleaved_coils(std::size_t n) {
 double error_of(const Chain& c, const SolverOptions& options) {
   const auto solver = make_coulomb_solver(options);
   Force force = force_on(c, *solver);
-  return sampled_error(c.r(), c.q, force.view(), 400).relative_l2;
+  return sampled_error({c.r(), c.q}, force.view(), ToleranceNorm::global, 400).relative_l2;
 }
 
 class FastSolvers : public testing::TestWithParam<const char*> {};
@@ -149,18 +150,52 @@ TEST(AutoSolver, takes_the_cheapest_and_stays_with_it_around_the_crossover) {
       << solver->description();
 }
 
-TEST(CostModel, interpolates_its_table_in_logarithms) {
-  CostModel model{.charges = {100, 1000}, .tolerances = {1e-6, 1e-2}, .seconds = {}};
-  model.seconds[0] = {1e-4, 1e-2, 1e-4, 1e-2}; // quadratic, whatever the tolerance
-  model.seconds[1] = {1, 1, 1, 1};
-  model.seconds[2] = {8e-4, 8e-3, 2e-4, 2e-3}; // linear
+// Sixteen jets side by side cost several times what one of the same size does.
+TEST(AutoSolver, sees_whether_charges_fill_space) {
+  detail::Crowding crowding;
+  for (const std::size_t n : {4000U, 20'000U}) {
+    const Chain jet = whipping_jet(n), cloud = gas(n);
+    EXPECT_LE(crowding.of({jet.r(), jet.q}), 0.2) << n;
+    EXPECT_GE(crowding.of({cloud.r(), cloud.q}), 0.7) << n;
+    Chain jets;
+    for (std::size_t k = 0; k < 16; ++k) {
+      const Chain one = whipping_jet(n / 16);
+      for (std::size_t i = 0; i < one.size(); ++i)
+        jets.add(
+            one.r()[i]
+                + 0.02 * Vec3(0, static_cast<double>(k % 4), static_cast<double>(k / 4)),
+            one.q[i]);
+    }
+    EXPECT_GE(crowding.of({jets.r(), jets.q}), 0.7) << n;
+  }
+  const CostModel& costs = CostModel::shipped();
+  const std::size_t between = (costs.crossover(1e-6) + costs.crossover(1e-6, 1)) / 2;
+  EXPECT_GT(costs.crossover(1e-6, 1), 1.5 * static_cast<double>(costs.crossover(1e-6)));
+  const auto used = [between](Chain (*make)(std::size_t)) {
+    const auto solver = make_coulomb_solver({.solver = "auto", .tolerance = 1e-6});
+    (void)force_on(make(between), *solver);
+    return solver->description().substr(6, 3);
+  };
+  EXPECT_EQ(used(whipping_jet), "fmm");
+  EXPECT_EQ(used(gas), "dir");
+}
+
+TEST(CostModel, interpolates_its_tables_in_logarithms) {
+  const CostModel model{.charges = {100, 1000},
+                        .tolerances = {1e-6, 1e-2},
+                        .direct = {1e-4, 1e-2}, // quadratic, whatever the tolerance
+                        .jet = {8e-4, 8e-3, 2e-4, 2e-3}, // linear
+                        .cloud = {32e-4, 32e-3, 8e-4, 8e-3}};
   EXPECT_NEAR(model.cost("direct", 100, 1e-6), 1e-4, 1e-18);
-  EXPECT_NEAR(model.cost("direct", 10000, 1e-4), 1, 1e-12);
+  EXPECT_NEAR(model.cost("direct", 10000, 1e-4, 0.5), 1, 1e-12);
   EXPECT_NEAR(model.cost("fmm", 100, 1e-4), 4e-4, 1e-16);
+  EXPECT_NEAR(model.cost("fmm", 100, 1e-4, 1), 16e-4, 1e-16);
+  EXPECT_NEAR(model.cost("fmm", 100, 1e-4, 0.5), 8e-4, 1e-16);
   EXPECT_NEAR(static_cast<double>(model.crossover(1e-2)), 200, 1); // 1e-8 n^2 = 2e-6 n
+  EXPECT_NEAR(static_cast<double>(model.crossover(1e-2, 1)), 800, 1);
   EXPECT_EQ(model.cheapest(100, 1e-6), "direct");
   EXPECT_EQ(model.cheapest(2000, 1e-6), "fmm");
-  EXPECT_THROW((void)model.cost("magic", 100, 1e-6), ContractViolation);
+  EXPECT_THROW((void)model.cost("treecode", 100, 1e-6), ContractViolation);
 }
 
 /// A direct sum that is wrong by a part in a thousand.
@@ -168,11 +203,15 @@ class Wrong final : public CoulombSolver {
 public:
   explicit Wrong(int& tightened)
       : tightened_(tightened) {}
-  void add_force(ConstVec3View r, std::span<const double> q, Vec3View force) override {
-    exact_->add_force(r, q, force);
+  void add_force(const PointCharges& charges, Vec3View force) override {
+    exact_->add_force(charges, force);
     for (double& f : force.x) f *= tightened_ < 2 ? 1.001 : 1;
     for (double& f : force.y) f *= tightened_ < 2 ? 1.001 : 1;
     for (double& f : force.z) f *= tightened_ < 2 ? 1.001 : 1;
+  }
+  void add_force_from(const PointCharges& sources, const PointCharges& targets,
+                      Vec3View force) override {
+    exact_->add_force_from(sources, targets, force);
   }
   [[nodiscard]] std::size_t coincident_pairs() const override { return 0; }
   [[nodiscard]] CoulombAccuracy accuracy() const override { return {.tolerance = 1e-6}; }

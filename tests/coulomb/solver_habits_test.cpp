@@ -52,10 +52,10 @@ TEST_P(SolverHabits, a_number_of_beads_seen_before_allocates_nothing) {
     Chain chain = random_chain(n, 1, 1);
     chain.set(4, chain.r()[3]);
     Force force(n);
-    solver->add_force(chain.r(), chain.q, force.view());
+    solver->add_force({chain.r(), chain.q}, force.view());
     const std::size_t before = allocations();
     for (double& v : chain.x) v *= 1.5;
-    solver->add_force(chain.r(), chain.q, force.view());
+    solver->add_force({chain.r(), chain.q}, force.view());
     EXPECT_EQ(allocations(), before) << n;
   }
 }
@@ -64,7 +64,7 @@ TEST_P(SolverHabits, columns_of_different_length_are_a_contract_violation) {
   const Chain chain(5);
   Force force(5);
   const auto add = [&](ConstVec3View r, std::span<const double> q, Vec3View f) {
-    solver->add_force(r, q, f);
+    solver->add_force({r, q}, f);
   };
   const std::span<const double> shorter(chain.x.data(), 4);
   const Vec3View f = force.view();

@@ -174,7 +174,7 @@ TEST_P(SolverLaws, the_force_is_added_to_what_is_there) {
   const Chain chain = random_chain(77, 1, 1);
   const Force once = force_on(chain, *solver);
   Force twice = once;
-  solver->add_force(chain.r(), chain.q, twice.view());
+  solver->add_force({chain.r(), chain.q}, twice.view());
   for (std::size_t i = 0; i < chain.size(); ++i) EXPECT_EQ(twice[i], 2 * once[i]) << i;
 }
 

@@ -38,23 +38,27 @@ TEST_F(Calibration, comes_back_as_it_was_written) {
   for (const double tolerance : {1e-3, 1e-7})
     for (const std::size_t n : {100U, 5000U, 300000U})
       for (const auto solver : priced_solvers)
-        EXPECT_NEAR(again.cost(solver, n, tolerance) / model.cost(solver, n, tolerance), 1,
-                    2e-3);
+        for (const double crowding : {0.0, 0.3, 1.0})
+          EXPECT_NEAR(again.cost(solver, n, tolerance, crowding)
+                          / model.cost(solver, n, tolerance, crowding),
+                      1, 2e-3);
 }
 
 TEST_F(Calibration, that_is_incomplete_or_wrong_is_refused_with_file_and_key) {
   const std::string good =
       "charges = [100, 1000]\ntolerances = [1e-6, 1e-2]\n"
-      "direct = [1, 2, 3, 4]\ntreecode = [1, 2, 3, 4]\nfmm = [1, 2, 3, 4]\n";
+      "direct = [1, 2]\nfmm_jet = [1, 2, 3, 4]\nfmm_cloud = [1, 2, 3, 4]\n";
   EXPECT_EQ(complaint_about_text(good), "(accepted)");
   const auto but = [&](const std::string& piece, const std::string& by) {
     std::string text = good;
     return complaint_about_text(text.replace(text.find(piece), piece.size(), by));
   };
-  expect_all(but("fmm = [1, 2, 3, 4]\n", ""), {file_.string(), "fmm"});
-  expect_all(but("fmm = [1, 2, 3, 4]", "fmm = [1, 2, 3]"),
-             {":5", "fmm", "3 numbers, must be 4"});
-  expect_all(but("fmm = [1, 2", "fmm = [1, -2"), {":5", "-2", "positive"});
+  expect_all(but("fmm_jet = [1, 2, 3, 4]\n", ""), {file_.string(), "fmm_jet"});
+  expect_all(but("fmm_cloud = [1, 2, 3, 4]", "fmm_cloud = [1, 2, 3]"),
+             {":5", "fmm_cloud", "3 numbers, must be 4"});
+  expect_all(but("fmm_cloud = [1, 2", "fmm_cloud = [1, -2"), {":5", "-2", "positive"});
+  expect_all(but("direct = [1, 2]", "direct = [1]"), {":3", "1 numbers, must be 2"});
+  expect_all(but("fmm_jet", "treecode"), {":4", "earlier version", "ehdjet calibrate"});
   expect_all(but("[100, 1000]", "[1000, 100]"), {":1", "charges", "ascending"});
   expect_all(but("direct", "dierct"), {":3", "unknown key dierct"});
 }

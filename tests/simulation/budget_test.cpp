@@ -506,7 +506,7 @@ TEST(Budget, with_a_fast_solver_is_off_by_no_more_than_its_forces) {
       run.simulation->add(std::make_unique<Watch>(end / steps, [&](const JetSnapshot& s) {
         std::ranges::fill(f, 0.0);
         const std::span<double> all(f);
-        direct->add_force(s.columns.position(), s.jet.charge,
+        direct->add_force({s.columns.position(), s.jet.charge},
                           {all.subspan(0, n), all.subspan(n, n), all.subspan(2 * n, n)});
         double force = 0, speed = 0;
         for (const double c : f) force += c * c;

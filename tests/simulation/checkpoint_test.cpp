@@ -218,18 +218,14 @@ TEST(Checkpoint, keeps_the_times_of_the_refinements) {
   EXPECT_GT(expect_same_bits(scene, 4e-3, 5e-4).simulation->statistics().refinements, 2U);
 }
 
-/// The treecode is the cheaper one from so many charges on.
+/// The fast multipole method is the cheaper one from so many charges on.
 CostModel prices(double crossover) {
-  CostModel costs{.charges = {1, crossover, 1e4}, .tolerances = {1e-8, 1e-2}};
-  const auto set = [&](std::size_t solver, std::vector<double> seconds) {
-    const std::vector<double> once = seconds;
-    seconds.insert(seconds.end(), once.begin(), once.end());
-    costs.seconds[solver] = std::move(seconds);
-  };
-  set(0, {1, crossover, 1e4});
-  set(1, {crossover, crossover, crossover});
-  set(2, {1e6, 1e6, 1e6});
-  return costs;
+  const std::vector<double> same(6, crossover);
+  return {.charges = {1, crossover, 1e4},
+          .tolerances = {1e-8, 1e-2},
+          .direct = {1, crossover, 1e4},
+          .jet = same,
+          .cloud = same};
 }
 
 /// A jagged chain that flies apart.

@@ -4,6 +4,7 @@
 #include "ehdjet/core/columns.hpp"
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
@@ -12,8 +13,12 @@
 
 namespace ehdjet {
 
-/// What a tolerance is relative to.
+/// What a tolerance is relative to. F is the net force, dF its error, f_ij the force of one pair.
 enum class ToleranceNorm {
+  /// rms |dF_i| <= tolerance F over the charges that move: dF of all of them, F the root mean
+  /// square of |F_i| without the strongest tenth. A few charges near a nozzle have 97 to 99 % of
+  /// |F|^2 of a jet; those that fly keep the tolerance all the same.
+  moving,
   global,  ///< |dF|_2 <= tolerance |F|_2 over all charges
   per_bead ///< |dF_i| <= tolerance sum_j |f_ij| for every charge
 };
@@ -27,17 +32,26 @@ struct CoulombAccuracy {
   ToleranceNorm norm = ToleranceNorm::global;
 };
 
+/// Point charges in the caller's columns, all of length n.
+struct PointCharges {
+  ConstVec3View r;           ///< [m]
+  std::span<const double> q; ///< [C]
+  /// 1: the charge moves, 0: it rests. Empty: all move. Looked at in the norm `moving` only.
+  std::span<const std::uint8_t> moves = {};
+  [[nodiscard]] std::size_t size() const { return q.size(); }
+};
+
 /// What comparisons with the direct sum have found so far.
 struct CoulombChecks {
   std::size_t number = 0, violations = 0; ///< of checks; of those above the tolerance
   double last = 0, largest = 0;           ///< errors in the norm of the tolerance [-]
 };
 
-/// Sums the mutual Coulomb force of n point charges; how it does so is the subclass's business.
+/// Sums the Coulomb forces of point charges; how it does so is the subclass's business.
 ///
 ///     C_i = sum_{j != i} k_C q_i q_j (r_i - r_j) / |r_i - r_j|^3            (model eq. 3)
 ///
-/// shapes : r (n), q (n) -> force (n), in the caller's order, *added* to what is there
+/// shapes : force (n) in the caller's order, *added* to what is there
 /// units  : [m], [C] -> [N]; k_C is `constants::coulomb`
 /// laws   : a pair at zero distance is skipped (never NaN) and counted in `coincident_pairs()`;
 ///          the same input gives the same bits for a given number of threads
@@ -49,17 +63,29 @@ class CoulombSolver {
 public:
   virtual ~CoulombSolver() = default;
 
-  virtual void add_force(ConstVec3View r, std::span<const double> q, Vec3View force) = 0;
+  /// Of all charges on each other. In the norm `moving` nothing is promised about the force on
+  /// charges that rest.
+  virtual void add_force(const PointCharges& charges, Vec3View force) = 0;
 
-  /// Energy of the same charges [J],
+  /// Of the sources on the targets and not back: images, a mat, a part of a chain on another one.
+  /// With target charges of 1 it is the field [V/m]. The tolerance holds for the forces on the
+  /// targets, in the same norm.
+  ///
+  /// shapes : sources (m), targets (n) -> force (n)
+  /// cost   : direct sum m n pairs, each for one side; treecode O(n log m), fast multipole method
+  ///          O(m + n), a far pair as dear as one of `add_force`, which serves both sides
+  virtual void add_force_from(const PointCharges& sources, const PointCharges& targets,
+                              Vec3View force) = 0;
+
+  /// Energy of charges [J],
   ///
   ///     U = sum over pairs of k_C q_i q_j / |r_i - r_j| ,
   ///
   /// within the tolerance of accuracy() times the sum of the pairs' magnitudes; pairs at zero
   /// distance are skipped. The same bits for any number of threads. By default pair by pair.
-  [[nodiscard]] virtual double energy(ConstVec3View r, std::span<const double> q);
+  [[nodiscard]] virtual double energy(ConstVec3View r, std::span<const double> q) const;
 
-  /// Pairs at zero distance met by the last `add_force`.
+  /// Pairs at zero distance met by the last call for forces.
   [[nodiscard]] virtual std::size_t coincident_pairs() const = 0;
   [[nodiscard]] virtual CoulombAccuracy accuracy() const = 0;
   [[nodiscard]] virtual std::string_view name() const = 0;

@@ -71,7 +71,7 @@ struct GravityConfig {
 struct CoulombConfig {
   std::string solver = "direct";
   double tolerance = 1e-6; ///< of the net force, what all but the direct sum keep [-]
-  ToleranceNorm tolerance_norm = ToleranceNorm::global;
+  std::optional<ToleranceNorm> norm = {}; ///< moving with a nozzle, global for chains
   // For studies; otherwise they follow from the tolerance.
   std::optional<std::size_t> order = {};
   std::optional<double> opening = {};

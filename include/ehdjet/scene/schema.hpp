@@ -69,8 +69,10 @@ inline constexpr Choices<SurfaceTensionForm, 2> surface_tension_forms{
     {{"paper", SurfaceTensionForm::paper}, {"line", SurfaceTensionForm::line}}};
 inline constexpr Choices<EventPlacement, 2> event_placements{
     {{"located", EventPlacement::located}, {"step-end", EventPlacement::step_end}}};
-inline constexpr Choices<ToleranceNorm, 2> tolerance_norms{
-    {{"global", ToleranceNorm::global}, {"per-bead", ToleranceNorm::per_bead}}};
+inline constexpr Choices<ToleranceNorm, 3> tolerance_norms{
+    {{"moving", ToleranceNorm::moving},
+     {"global", ToleranceNorm::global},
+     {"per-bead", ToleranceNorm::per_bead}}};
 inline constexpr Choices<LandingSteps, 2> landing_steps{
     {{"auto", LandingSteps::automatic}, {"located", LandingSteps::located}}};
 inline constexpr Choices<ErrorNorm, 2> error_norms{
@@ -176,14 +178,14 @@ template <class V>
 void describe(V& v, CoulombConfig& c) {
   v.optional("solver", c.solver, coulomb_solver_names(),
              "how the mutual forces are summed");
+  v.optional("tolerance", c.tolerance, between("-", 1e-13, 0.1),
+             "largest relative error of the force, in the norm; the direct sum is exact");
   v.optional(
-      "tolerance", c.tolerance, between("-", 1e-13, 0.1),
-      "largest relative error of the net force, |dF|/|F| over all beads; the direct sum "
-      "is exact");
-  v.optional(
-      "tolerance_norm", c.tolerance_norm, tolerance_norms,
-      "what the tolerance is relative to: the net force, or for each bead the sum of the "
-      "magnitudes that act on it");
+      "norm", c.norm, tolerance_norms,
+      "what the error is relative to: for the beads that move their root mean square net "
+      "force without the strongest tenth, for all beads |F|, or for each bead the sum of "
+      "the magnitudes that act on it",
+      "moving with a nozzle, global for a chain");
   v.optional("order", c.order, between("-", 2, 22), "order of the expansions, for studies",
              "follows from the tolerance");
   v.optional("opening", c.opening, positive("-", 0.99),

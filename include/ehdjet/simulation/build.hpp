@@ -30,7 +30,7 @@ std::unique_ptr<Simulation> build_simulation(const Scene& scene, Extras extras =
 std::unique_ptr<JetDynamics> build_dynamics(const Scene& scene);
 
 /// What a scene asks of the Coulomb solver.
-SolverOptions solver_options(const CoulombConfig& config,
+SolverOptions solver_options(const SceneConfig& config,
                              const std::optional<CostModel>& costs);
 
 /// The columns of a jet: those of every jet and those that the terms add, with the error scales

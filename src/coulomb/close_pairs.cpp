@@ -1,0 +1,116 @@
+#include "close_pairs.hpp"
+
+#include "ehdjet/core/constants.hpp"
+
+#include <array>
+#include <bit>
+#include <cmath>
+
+#include "pair_kernel.hpp"
+
+namespace ehdjet::detail {
+namespace {
+
+constexpr std::uint32_t none = 0xffffffffU;
+
+/// Cells of a million close distances: rarely is a neighbour of a charge in another cell.
+constexpr double cells = 0x1p-20 / close_distance;
+/// Farther out than so many cells two coordinates are equal or not close.
+constexpr double far_cell = 0x1p34;
+constexpr double at_edge = 0x1p-18; ///< within reach of the next cell, rounding included
+
+using Cell = std::array<double, 3>;
+
+std::size_t hash(const Cell& cell) {
+  std::uint64_t h = 0;
+  for (const double c : cell) {
+    h = (h ^ std::bit_cast<std::uint64_t>(c + 0.0)) * 0x9e3779b97f4a7c15U; // no -0
+    h ^= h >> 29U;
+  }
+  return static_cast<std::size_t>(h);
+}
+
+double in_cells(double scaled) {
+  return scaled * cells + 0.5; // the origin in the middle of a cell
+}
+
+Cell cell_of(const Vec3& r, double scale) {
+  Cell cell;
+  for (std::size_t k = 0; k < 3; ++k)
+    cell[k] = std::floor(in_cells(scale * r[static_cast<int>(k)]));
+  return cell;
+}
+
+/// Calls visit with the cells in which places close to r may be.
+template <class Visit>
+void for_cells_around(const Vec3& r, double scale, const Visit& visit) {
+  std::array<std::array<double, 2>, 3> choice;
+  std::array<int, 3> choices{1, 1, 1};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double t = in_cells(scale * r[static_cast<int>(k)]), cell = std::floor(t);
+    choice[k] = {cell, cell};
+    if (std::abs(t) > far_cell) continue;
+    if (t - cell < at_edge) choice[k][1] = cell - 1, choices[k] = 2;
+    if (cell + 1 - t < at_edge) choice[k][1] = cell + 1, choices[k] = 2;
+  }
+  for (int a = 0; a < choices[0]; ++a)
+    for (int b = 0; b < choices[1]; ++b)
+      for (int c = 0; c < choices[2]; ++c)
+        visit(Cell{choice[0][static_cast<std::size_t>(a)],
+                   choice[1][static_cast<std::size_t>(b)],
+                   choice[2][static_cast<std::size_t>(c)]});
+}
+
+/// k_C q_1 q_2 d/d^3 without overflow on the way.
+Vec3 force_of_pair(const Vec3& d, double q1, double q2) {
+  const double size = d.cwiseAbs().maxCoeff();
+  const Vec3 u = d / size;
+  return (constants::coulomb * (q1 / size)) * (q2 / size) / (u.squaredNorm() * u.norm())
+         * u;
+}
+
+} // namespace
+
+std::size_t ClosePairs::add_forces(const PointCharges& sources, const PointCharges& targets,
+                                   double scale, Vec3View force) {
+  lists_.assign(std::bit_ceil(2 * sources.size()), none);
+  places_.clear();
+  places_.reserve(sources.size());
+  const auto list = [&](const Cell& cell) -> std::uint32_t& {
+    return lists_[hash(cell) & (lists_.size() - 1)];
+  };
+  for (std::size_t j = 0; j < sources.size(); ++j) {
+    const Vec3 r = sources.r[j];
+    std::uint32_t& first = list(cell_of(r, scale));
+    std::uint32_t at = first;
+    while (at != none && places_[at].r != r) at = places_[at].next;
+    if (at == none) {
+      at = static_cast<std::uint32_t>(places_.size());
+      places_.push_back({r, 0, 0, first});
+      first = at;
+    }
+    places_[at].charge += sources.q[j], ++places_[at].number;
+  }
+  std::size_t coincident = 0;
+  for (std::size_t i = 0; i < targets.size(); ++i) {
+    const Vec3 r = targets.r[i];
+    for_cells_around(r, scale, [&](const Cell& cell) {
+      for (std::uint32_t at = list(cell); at != none; at = places_[at].next) {
+        const Place& place = places_[at];
+        if (cell_of(place.r, scale) != cell) continue; // another one with the same hash
+        if (place.r == r) {
+          coincident += place.number;
+          continue;
+        }
+        bool close = true;
+        for (int k = 0; k < 3; ++k)
+          close = close && std::abs(scale * r[k] - scale * place.r[k]) < close_distance;
+        if (close && targets.q[i] != 0 && place.charge != 0) // or 0 * inf
+          force.add(i, force_of_pair(r - place.r, targets.q[i], place.charge));
+      }
+    });
+  }
+  return coincident;
+}
+
+} // namespace ehdjet::detail

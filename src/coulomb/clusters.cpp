@@ -1,0 +1,92 @@
+#include "clusters.hpp"
+
+#include <omp.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "multipoles.hpp"
+
+namespace ehdjet::detail {
+namespace {
+
+constexpr std::size_t parallel_from = 1024;
+
+/// Sorted, charges that fill space have fewer neighbours than curves that do. Those of a jet have 60
+/// at most.
+constexpr double worth_sorting = 80;
+
+double mean_neighbours(const ClusterTree& tree) {
+  constexpr std::size_t samples = 8;
+  constexpr double near = 3;
+  const auto clusters = tree.clusters();
+  const auto leaves = tree.leaves();
+  std::size_t neighbours = 0;
+  for (std::size_t k = 0; k < samples; ++k) {
+    const Cluster& a = clusters[leaves[(2 * k + 1) * leaves.size() / (2 * samples)]];
+    for (const std::uint32_t leaf : leaves) {
+      const Cluster& b = clusters[leaf];
+      const auto [x, y, z] = between(a.centre, b.centre);
+      const double reach = near * (a.radius + b.radius);
+      neighbours += x * x + y * y + z * z < reach * reach ? 1 : 0;
+    }
+  }
+  return static_cast<double>(neighbours) / samples;
+}
+
+} // namespace
+
+int threads_for(std::size_t charges) {
+  return charges < parallel_from ? 1 : omp_get_max_threads();
+}
+
+void Clusters::find(ScaledCharges& charges, std::size_t group, std::size_t leaf) {
+  const ScaledCharges::Group& g = group == 0 ? charges.sources() : charges.targets();
+  const std::size_t n = g.charges.size();
+  tree.shape(g.begin, n, leaf);
+  tree.bound(charges.columns(), charges.moves());
+  const ClusterTree& found = tree;
+  neighbours = mean_neighbours(found);
+  sorted = neighbours > worth_sorting || !found.is_ordered();
+  if (!sorted) return;
+  sort(charges.columns());
+  charges.reorder(group, order_);
+  tree.bound(charges.columns(), charges.moves());
+  neighbours = mean_neighbours(found);
+}
+
+// Halves each cluster of the tree across its longest side, level after level: a few charges far away
+// stretch the few clusters that they are in.
+void Clusters::sort(const ChargeColumns& c) {
+  const std::size_t begin = tree.begin(), n = tree.charges();
+  points_.resize(n), order_.resize(n);
+  for (std::size_t i = 0; i < n; ++i)
+    points_[i] = {{c.x[begin + i], c.y[begin + i], c.z[begin + i]},
+                  static_cast<std::uint32_t>(i)};
+  const auto clusters = std::as_const(tree).clusters();
+  for (std::size_t level = 0; level + 1 < tree.levels().size(); ++level) {
+    const std::size_t first = tree.levels()[level], last = tree.levels()[level + 1];
+#pragma omp parallel for schedule(dynamic) if (n >= parallel_from)
+    for (std::size_t k = first; k < last; ++k) {
+      const Cluster& cluster = clusters[k];
+      if (cluster.is_leaf()) continue;
+      const auto at = [&](std::size_t i) {
+        return points_.begin() + static_cast<std::ptrdiff_t>(i - begin);
+      };
+      const auto from = at(cluster.begin), to = at(tree.end_of(cluster));
+      std::size_t longest = 0;
+      double length = -1;
+      for (std::size_t side = 0; side < 3; ++side) {
+        const auto [low, high] = std::ranges::minmax(
+            std::ranges::subrange(from, to), {}, [&](const Point& p) { return p.r[side]; });
+        if (high.r[side] - low.r[side] > length)
+          longest = side, length = high.r[side] - low.r[side];
+      }
+      std::ranges::nth_element(from, at(clusters[cluster.child].end), to, {},
+                               [&](const Point& p) { return p.r[longest]; });
+    }
+  }
+  for (std::size_t i = 0; i < n; ++i) order_[i] = points_[i].number;
+}
+
+} // namespace ehdjet::detail

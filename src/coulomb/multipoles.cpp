@@ -1,0 +1,95 @@
+#include "multipoles.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace ehdjet::detail {
+
+// From and to a set that nobody looks at.
+ExpansionKernel::Batch idle_batch() {
+  static const std::array<double, coefficients(highest_order)> zero{};
+  thread_local std::array<double, coefficients(highest_order)> nowhere{};
+  ExpansionKernel::Batch batch{};
+  for (std::size_t lane = 0; lane < ExpansionKernel::most_lanes; ++lane) {
+    for (std::size_t side = 0; side < 2; ++side)
+      batch.from[side][lane] = zero.data(), batch.to[side][lane] = nowhere.data();
+    batch.dz[lane] = 1;
+  }
+  return batch;
+}
+
+void shift_level(const Expansions& expansions, const ClusterTree& tree, std::size_t level,
+                 double* sets, Shift direction) {
+  const ExpansionKernel& kernel = expansions.kernel;
+  const auto clusters = tree.clusters();
+  const std::size_t begin = tree.levels()[level], end = tree.levels()[level + 1];
+  const std::size_t parents = kernel.lanes / 2; // per batch
+#pragma omp for schedule(static)
+  for (std::size_t first = begin; first < end; first += parents) {
+    ExpansionKernel::Batch batch = idle_batch();
+    for (std::size_t k = 0; k < parents && first + k < end; ++k) {
+      const Cluster& parent = clusters[first + k];
+      if (parent.is_leaf()) continue;
+      double* own = sets + expansions.set * (first + k);
+      if (direction == Shift::upward) std::fill_n(own, expansions.set, 0.0);
+      for (std::size_t c = 0; c < 2; ++c) {
+        const Cluster& child = clusters[parent.child + c];
+        double* childs = sets + expansions.set * (parent.child + c);
+        if (direction == Shift::upward)
+          set_lane(batch, 2 * k + c, childs, own, between(child.centre, parent.centre));
+        else
+          set_lane(batch, 2 * k + c, own, childs, between(parent.centre, child.centre));
+      }
+    }
+    (direction == Shift::upward ? kernel.shift_multipoles
+                                : kernel.shift_locals)(expansions.numbers, batch);
+  }
+}
+
+void Multipoles::gather(const ClusterTree& tree, const ChargeColumns& charges) {
+  const auto clusters = tree.clusters();
+  const auto leaves = tree.leaves();
+#pragma omp for schedule(static)
+  for (std::size_t i = 0; i < leaves.size(); ++i) {
+    const Cluster& leaf = clusters[leaves[i]];
+    expansions_.kernel.charges_to_multipole(expansions_.numbers, charges, leaf.begin,
+                                            tree.end_of(leaf), leaf.centre,
+                                            sets_.data() + expansions_.set * leaves[i]);
+  }
+  for (std::size_t level = tree.levels().size() - 1; level-- > 0;)
+    shift_level(expansions_, tree, level, sets_.data(), Shift::upward);
+}
+
+// The power of degree l, sqrt(sum_m |M_l^m|^2), is Q r^l at most: for charges in two places at the
+// ends of the cluster. For a straight piece of a curve it is Q r^l/(l+1), on a ring a third of Q r^l,
+// and the criterion is calibrated on those. The last two degrees, because on a symmetric
+// cluster every other one vanishes.
+void Multipoles::weigh(ClusterTree& tree) const {
+  constexpr double smooth = 0.4, most = 5;
+  const int p = expansions_.numbers.order;
+  const auto clusters = tree.clusters();
+#pragma omp for schedule(static)
+  for (std::size_t k = 0; k < clusters.size(); ++k) {
+    Cluster& c = clusters[k];
+    c.lumped = 1;
+    if (!(c.radius > 0 && c.charge > 0)) continue;
+    const double* set = (*this)[k];
+    double part = 0; // squared
+    double most_power = c.charge * c.charge * power(c.radius * c.radius, p - 1);
+    for (int l = p - 1; l <= p; ++l, most_power *= c.radius * c.radius) {
+      double half = set[real_part(l, 0)] * set[real_part(l, 0)] / 2;
+#pragma omp simd reduction(+ : half)
+      for (std::size_t i = real_part(l, 1); i < real_part(l + 1, 0); ++i)
+        half += set[i] * set[i];
+      // Of the smallest radii no power is left: the worst case.
+      if (!(2 * half <= smooth * smooth * most_power) || most_power < 1e-290)
+        part =
+            std::max(part, most_power < 1e-290 ? 1 : std::min(1.0, 2 * half / most_power));
+    }
+    if (part == 0) continue;
+    part = std::sqrt(part);
+    c.lumped = 1 + (most - 1) * std::max(0.0, (part - smooth) / (1 - smooth));
+  }
+}
+
+} // namespace ehdjet::detail

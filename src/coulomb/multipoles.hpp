@@ -1,0 +1,83 @@
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include "cluster_tree.hpp"
+#include "expansion_kernel.hpp"
+#include "expansion_tables.hpp"
+
+namespace ehdjet::detail {
+
+/// x^n, n >= 0.
+inline double power(double x, int n) {
+  double result = 1;
+  for (; n > 0; n /= 2, x *= x)
+    if (n % 2 == 1) result *= x;
+  return result;
+}
+
+struct Displacement {
+  double x, y, z;
+  [[nodiscard]] double norm() const { return std::sqrt(x * x + y * y + z * z); }
+};
+[[nodiscard]] inline Displacement between(const double* from, const double* to) {
+  return {to[0] - from[0], to[1] - from[1], to[2] - from[2]};
+}
+
+/// A batch whose lanes do nothing, and one lane of it put to use.
+[[nodiscard]] ExpansionKernel::Batch idle_batch();
+inline void set_lane(ExpansionKernel::Batch& batch, std::size_t lane, const double* from,
+                     double* to, const Displacement& d) {
+  batch.from[0][lane] = from, batch.to[0][lane] = to;
+  batch.dx[lane] = d.x, batch.dy[lane] = d.y, batch.dz[lane] = d.z;
+}
+
+/// The kernel of one order, with its tables.
+struct Expansions {
+  Expansions(const ExpansionKernel& operators, int order)
+      : kernel(operators)
+      , tables(order)
+      , numbers(tables.numbers())
+      , set(coefficients(order)) {}
+  Expansions(const Expansions&) = delete; // numbers point into tables
+  Expansions& operator=(const Expansions&) = delete;
+
+  ExpansionKernel kernel;
+  ExpansionTables tables;
+  ExpansionNumbers numbers;
+  std::size_t set; ///< numbers per coefficient set
+};
+
+/// Moves the expansions of the clusters of one level to their parents (upward), where they
+/// replace what was there, or adds those of the parents to theirs. Every thread of the team;
+/// `level` is the parents', `sets` has one coefficient set per cluster.
+enum class Shift { upward, downward };
+void shift_level(const Expansions& expansions, const ClusterTree& tree, std::size_t level,
+                 double* sets, Shift direction);
+
+/// Multipoles of all clusters of a tree.
+class Multipoles {
+public:
+  explicit Multipoles(const Expansions& expansions)
+      : expansions_(expansions) {}
+  void reserve(const ClusterTree& tree) {
+    const std::size_t numbers = expansions_.set * tree.clusters().size();
+    if (sets_.size() < numbers) sets_.resize(numbers);
+  }
+  /// Leaves from their charges, parents from their children. Every thread of the team.
+  void gather(const ClusterTree& tree, const ChargeColumns& charges);
+  /// Tells each cluster how much more its series errs than that of charges that are spread over
+  /// it. Every thread of the team.
+  void weigh(ClusterTree& tree) const;
+  [[nodiscard]] const double* operator[](std::size_t cluster) const {
+    return sets_.data() + expansions_.set * cluster;
+  }
+
+private:
+  const Expansions& expansions_;
+  std::vector<double> sets_;
+};
+
+} // namespace ehdjet::detail
