@@ -147,7 +147,7 @@ TEST(OwnColumns, follow_a_refinement_by_either_remap) {
     JetState jet = marked_jet();
     const double before = sum_of(carried(jet, "solvent"));
     RefinementRule rule;
-    rule.mesh.length = 0.25, rule.remap = remap;
+    rule.length = 0.25, rule.remap = remap;
     ASSERT_TRUE(refine_jet(jet, rule));
     ASSERT_EQ(jet.links(), 14U);
     EXPECT_NEAR(sum_of(carried(jet, "solvent")) / before, 1, 1e-14);
@@ -176,7 +176,7 @@ TEST(OwnColumns, can_keep_their_weighted_sum_in_a_refinement) {
   };
   const double before = weighted(jet);
   RefinementRule rule;
-  rule.mesh.length = 0.25;
+  rule.length = 0.25;
   ASSERT_TRUE(refine_jet(jet, rule));
   EXPECT_NEAR(weighted(jet) / before, 1, 1e-14);
 }
