@@ -175,8 +175,8 @@ std::vector<FrameColumn> frame_columns(const BeadTable& table) {
         {info(table.carried()[c]), [c](const JetSnapshot& s) -> std::span<const double> {
            return s.jet.carried(c);
          }});
-  columns.push_back({{"landed", "1", "1: the bead rests on the collector", flag},
-                     computed(mark_landed)});
+  columns.push_back(
+      {{"landed", "1", "1: the bead rests on the collector", flag}, computed(mark_landed)});
   columns.push_back({{"embryo", "1", "1: the bead is still forming at the nozzle", flag},
                      computed(mark_embryo)});
   return columns;

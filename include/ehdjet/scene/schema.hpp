@@ -291,10 +291,10 @@ void describe(V& v, OutputConfig& c) {
              "time between frames of all beads", "none are written");
   v.optional("deposit", c.deposit, YesNo{},
              "record every bead that leaves at the collector");
-  v.optional(
-      "refinements", c.refinements, refinement_records,
-      "record for each refinement the change of all sums, or also that of the energy of all "
-      "pairs of charges, which costs as much as two force evaluations");
+  v.optional("refinements", c.refinements, refinement_records,
+             "record for each refinement the change of all sums, or also that of the "
+             "energy of all "
+             "pairs of charges, which costs as much as two force evaluations");
   v.optional("budget", c.budget, positive("s", longest_time),
              "time between rows of energy, momentum and their residual",
              "none are written");
