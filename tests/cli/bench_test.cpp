@@ -50,7 +50,7 @@ TEST(Export, has_the_budget_of_a_run_that_was_asked_for_one) {
   const Outcome o = command(folder, run + " --force --set output.budget=2e-4");
   ASSERT_EQ(o.exit_code, 0) << o.err;
   const Outcome table = command(folder, "export b.h5 --budget");
-  EXPECT_THAT(table.out, testing::StartsWith("time_s,kinetic_energy_j,coulomb_energy_j,"));
+  EXPECT_THAT(table.out, testing::StartsWith("time_s,kinetic_energy_j,field_energy_j,"));
   EXPECT_THAT(table.out, HasSubstr(",energy_residual_relative,momentum_x_kg_m_s,"));
   EXPECT_EQ(std::ranges::count(table.out, '\n'), 1 + 6);
 }
