@@ -31,8 +31,9 @@ public:
   /// By the number of pairs, and by the larger of both sets; the choice for `add_force` stays.
   void add_force_from(const PointCharges& sources, const PointCharges& targets,
                       Vec3View force) override {
-    const auto [fewer, more] = std::minmax(sources.size(), targets.size());
-    const double pairs = 2 * static_cast<double>(fewer) * static_cast<double>(more);
+    const std::size_t more = std::max(sources.size(), targets.size());
+    const double pairs =
+        2 * static_cast<double>(sources.size()) * static_cast<double>(targets.size());
     used_ = costs_.cost("direct", static_cast<std::size_t>(std::sqrt(pairs)),
                         options_.tolerance)
                     <= costs_.cost("fmm", more, options_.tolerance, crowding_)

@@ -65,14 +65,19 @@ void Multipoles::gather(const ClusterTree& tree, const ChargeColumns& charges) {
 // and the criterion is calibrated on those. The last two degrees, because on a symmetric
 // cluster every other one vanishes.
 void Multipoles::weigh(ClusterTree& tree) const {
-  constexpr double smooth = 0.4, most = 5;
+  constexpr double smooth = 0.4;
   const int p = expansions_.numbers.order;
+  const double most = p + 1; // the field of degree p is p + 1 times its potential over r
   const auto clusters = tree.clusters();
 #pragma omp for schedule(static)
   for (std::size_t k = 0; k < clusters.size(); ++k) {
     Cluster& c = clusters[k];
     c.lumped = 1;
     if (!(c.radius > 0 && c.charge > 0)) continue;
+    if (c.moving > 0 && c.moving < static_cast<double>(tree.end_of(c) - c.begin)) {
+      c.lumped = most; // those that move may all be at one end
+      continue;
+    }
     const double* set = (*this)[k];
     double part = 0; // squared
     double most_power = c.charge * c.charge * power(c.radius * c.radius, p - 1);

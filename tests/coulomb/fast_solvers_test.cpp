@@ -223,7 +223,7 @@ private:
   std::unique_ptr<CoulombSolver> exact_ = make_coulomb_solver("direct");
 };
 
-TEST(CheckedSolver, measures_every_so_manieth_call_and_tightens_a_solver_that_fails) {
+TEST(CheckedSolver, measures_one_of_so_many_calls_and_tightens_a_solver_that_fails) {
   int tightened = 0;
   const auto solver = detail::make_checked_solver(std::make_unique<Wrong>(tightened), 3);
   const Chain c = random_chain(100, 1, 1);

@@ -24,7 +24,7 @@ struct SolverOptions {
   std::optional<std::size_t> leaf = {};
 
   std::optional<CostModel> costs = {}; ///< what "auto" goes by; the shipped one if absent
-  /// Every so-manieth call is compared with the direct sum on sampled charges; absent: none.
+  /// Every so many calls one is compared with the direct sum on sampled charges; absent: none.
   std::optional<std::size_t> check_every = {};
   SimdLevel simd = best_simd_level();
 };
