@@ -30,7 +30,7 @@ double margin_on_curves(std::size_t levels, int order) {
 }
 /// Charges that fill space have many more pairs, and a few that move among many that rest feel these
 /// with net forces that are small against each of them.
-constexpr double margin_in_space = 0.2, margin_among_resting = 0.05;
+constexpr double margin_in_space = 0.2, margin_among_resting = 0.01;
 
 class ClusterSolver final : public CoulombSolver {
 public:

@@ -257,7 +257,10 @@ private:
 TEST_P(Mat, beside_a_jet_leaves_the_tolerance_to_the_beads_that_fly) {
   for (const double tolerance : {1e-3, 1e-5})
     EXPECT_LE(error(ToleranceNorm::moving, tolerance), tolerance) << tolerance;
-  EXPECT_GT(error(ToleranceNorm::global, 1e-3), 2e-3); // why there is such a norm
+  // Why there is such a norm; the treecode's criterion leaves more to spare.
+  const double in_global = error(ToleranceNorm::global, 1e-5);
+  EXPECT_GT(in_global, GetParam() == std::string("fmm") ? 8e-5 : 4e-7);
+  EXPECT_GT(in_global, 8 * error(ToleranceNorm::moving, 1e-5));
 }
 
 INSTANTIATE_TEST_SUITE_P(Solvers, Mat, testing::Values("treecode", "fmm"),
