@@ -34,6 +34,18 @@ TEST(FastSolverRuns, differ_from_the_direct_sum_by_less_than_the_integrator_errs
   }
 }
 
+// A few beads at a nozzle have nearly all of |F|^2.
+TEST(FastSolverRuns, have_the_norm_of_the_beads_that_move_if_there_is_a_nozzle) {
+  Scene scene = refined_case(0.4 * cm, 1e-3);
+  scene.config.coulomb = CoulombConfig{.solver = "fmm"};
+  EXPECT_EQ(solver_options(scene.config, {}).norm, ToleranceNorm::moving);
+  scene.config.coulomb->norm = ToleranceNorm::per_bead;
+  EXPECT_EQ(solver_options(scene.config, {}).norm, ToleranceNorm::per_bead);
+  Scene chain = chain_scene();
+  chain.config.coulomb = CoulombConfig{.solver = "fmm"};
+  EXPECT_EQ(solver_options(chain.config, {}).norm, ToleranceNorm::global);
+}
+
 TEST(FastSolverRuns, report_the_error_of_their_checks) {
   Scene scene = solved_by(case_one("dormand-prince", 1e-4), "fmm", 1e-4);
   const auto unchecked = run(scene, 2e-3);
