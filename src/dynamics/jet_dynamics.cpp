@@ -55,7 +55,7 @@ void JetDynamics::evaluate(double t, std::span<const double> y, std::span<double
   EHDJET_EXPECTS(y.size() == rate.size() && chain_.beads() > 0);
   ++evaluations_;
   const Stage& stage = chain_.at(t, y, targets, sources);
-  const auto [begin, end] = stage.targets;
+  const std::size_t begin = stage.targets.begin, end = stage.targets.end;
   const std::size_t n = chain_.beads();
   const JetColumns<double> rates{rate, n};
   const Vec3View force = rates.velocity(); // summed in place, then divided by the mass
