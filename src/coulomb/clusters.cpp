@@ -77,10 +77,12 @@ void Clusters::sort(const ChargeColumns& c) {
       std::size_t longest = 0;
       double length = -1;
       for (std::size_t side = 0; side < 3; ++side) {
-        const auto [low, high] = std::ranges::minmax(
-            std::ranges::subrange(from, to), {}, [&](const Point& p) { return p.r[side]; });
-        if (high.r[side] - low.r[side] > length)
-          longest = side, length = high.r[side] - low.r[side];
+        const auto [low, high] =
+            std::minmax_element(from, to, [side](const Point& a, const Point& b) {
+              return a.r[side] < b.r[side];
+            });
+        if (high->r[side] - low->r[side] > length)
+          longest = side, length = high->r[side] - low->r[side];
       }
       std::ranges::nth_element(from, at(clusters[cluster.child].end), to, {},
                                [&](const Point& p) { return p.r[longest]; });

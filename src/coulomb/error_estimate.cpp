@@ -38,7 +38,9 @@ double ratio(long double a, long double b) {
 
 CoulombErrorSample sampled_error(const PointCharges& charges, ConstVec3View force,
                                  ToleranceNorm norm, std::size_t max_targets) {
-  const auto& [r, q, moves] = charges;
+  const ConstVec3View r = charges.r; // no structured binding: OpenMP could not share it
+  const std::span<const double> q = charges.q;
+  const std::span<const std::uint8_t> moves = charges.moves;
   const std::size_t n = q.size();
   EHDJET_EXPECTS(r.x.size() == n && r.y.size() == n && r.z.size() == n);
   EHDJET_EXPECTS(force.x.size() == n && force.y.size() == n && force.z.size() == n);

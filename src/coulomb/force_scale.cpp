@@ -24,8 +24,10 @@ void ForceScale::choose_groups(const ClusterProblem& p) {
   const std::uint8_t* moves = p.charges.moves();
   const std::size_t begin = p.targets.begin(), end = begin + p.targets.charges();
   const std::size_t groups = (end - begin + padding - 1) / padding;
-  const auto moving = static_cast<std::size_t>(
-      moves == nullptr ? end - begin : std::count(moves + begin, moves + end, 1));
+  const std::size_t moving =
+      moves == nullptr
+          ? end - begin
+          : static_cast<std::size_t>(std::count(moves + begin, moves + end, 1));
   const std::size_t sampled =
       std::min(groups, std::clamp<std::size_t>(moving / charges_per_group, 4, most_groups));
   groups_.clear();

@@ -56,8 +56,8 @@ hid_t native(ColumnType type) {
 std::unique_ptr<Column::DataSet>
 Column::DataSet::create(hid_t group, const ColumnInfo& info, std::size_t chunk_rows) {
   const hid_t type = native(info.type);
-  auto made = std::make_unique<DataSet>(
-      create_data_set(group, info.name.c_str(), type, chunk_rows), type);
+  std::unique_ptr<DataSet> made(
+      new DataSet{create_data_set(group, info.name.c_str(), type, chunk_rows), type});
   hdf5::write_attribute(made->handle, "unit", info.unit);
   hdf5::write_attribute(made->handle, "description", info.description);
   return made;

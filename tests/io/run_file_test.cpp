@@ -132,7 +132,7 @@ TEST(RunFile, has_only_the_parts_that_were_asked_for) {
 TEST(RunFile, nobody_writes_to_one_that_is_finished) {
   const ScratchFolder folder;
   const auto file = std::make_shared<RunFile>(folder / "run.h5", false, Provenance{}, 1);
-  const auto shown = record_frames(file, 1, true);
+  const auto shown = record_frames(file, 1, *test::table_with_stress());
   file->finish("complete", "", {}, {});
   EXPECT_THROW(shown->observe(fabricated_jet(1).snapshot()), ContractViolation);
   EXPECT_THROW(file->finish("complete", "", {}, {}), ContractViolation);

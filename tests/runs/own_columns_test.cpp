@@ -237,14 +237,25 @@ TEST(OwnColumns, end_in_the_deposit_with_what_they_had_at_the_landing) {
   EXPECT_NEAR(solvent / (inserted * solvent_at_birth), 1, 1e-12);
 }
 
+class KeepCheckpoints final : public Observer {
+public:
+  explicit KeepCheckpoints(std::vector<Checkpoint>& kept)
+      : kept_(kept) {}
+  void checkpoint(const Checkpoint& checkpoint) override { kept_.push_back(checkpoint); }
+
+private:
+  std::vector<Checkpoint>& kept_;
+};
+
 TEST(OwnColumns, go_on_from_a_checkpoint_with_the_same_bits) {
   const auto whole = drying(landing_jet());
   std::vector<Checkpoint> checkpoints;
-  whole->make_checkpoints(1e-3, [&](const Checkpoint& c) { checkpoints.push_back(c); });
+  whole->make_checkpoints(1e-3);
+  whole->add(std::make_shared<KeepCheckpoints>(checkpoints));
   whole->run_until(landed);
   ASSERT_GE(checkpoints.size(), 3U);
   const auto rest = drying(landing_jet());
-  rest->make_checkpoints(1e-3, [](const Checkpoint&) {});
+  rest->make_checkpoints(1e-3);
   rest->restore(checkpoints[1]);
   rest->run_until(landed);
   EXPECT_EQ(rest->jet().y, whole->jet().y);
@@ -255,11 +266,12 @@ TEST(OwnColumns, go_on_from_a_checkpoint_with_the_same_bits) {
 TEST(OwnColumns, of_a_checkpoint_must_be_those_of_the_scene) {
   const Scene scene = case_one();
   const auto complaint = [](Simulation& made, Simulation& restored) {
-    Checkpoint checkpoint;
-    made.make_checkpoints(1e-5, [&](const Checkpoint& c) { checkpoint = c; });
+    std::vector<Checkpoint> checkpoints;
+    made.make_checkpoints(1e-5);
+    made.add(std::make_shared<KeepCheckpoints>(checkpoints));
     made.run_until(5e-5);
     try {
-      restored.restore(checkpoint);
+      restored.restore(checkpoints.at(0));
     } catch (const InputError& e) {
       return std::string(e.what());
     }
@@ -351,10 +363,11 @@ TEST(OwnColumns, are_in_run_files_and_in_what_is_made_of_them) {
   EXPECT_EQ(first_line("beads.csv", [&](TextOutput& o) { export_beads(run, landed, o); }),
             "bead,x_m,y_m,z_m,vx_m_s,vy_m_s,vz_m_s,stress_pa,radius_m,volume_m3,mass_kg,"
             "charge_c,landed,embryo,age_s,mark,solvent_m3,way_m");
-  EXPECT_EQ(first_line("deposit.csv", [&](TextOutput& o) { export_deposit(run, o); }),
-            "time_s,removal_time_s,x_m,y_m,z_m,vx_m_s,vy_m_s,vz_m_s,stress_pa,"
-            "landing_radius_m,radius_m,mass_kg,charge_c,volume_m3,age_s,mark,solvent_m3,"
-            "way_m,arc_length_m");
+  EXPECT_EQ(
+      first_line("deposit.csv", [&](TextOutput& o) { export_table(run, "deposit", o); }),
+      "time_s,removal_time_s,x_m,y_m,z_m,vx_m_s,vy_m_s,vz_m_s,stress_pa,"
+      "landing_radius_m,radius_m,mass_kg,charge_c,volume_m3,age_s,mark,solvent_m3,"
+      "way_m,arc_length_m");
   export_vtk(run, landed, folder / "run.pvd", false);
   EXPECT_TRUE(std::filesystem::exists(folder / "run_vtk" / "frame_000008.vtp"));
 
