@@ -26,21 +26,22 @@ void archive_columns(const Archive& a, JetState& jet) {
           throw InputError("the checkpoint has no column " + c.name
                            + ", which the scene has");
   }
-  const auto checked = [&](const std::string& name, std::vector<double>& values) {
-    a(name, values);
-    if (values.size() < 2 || values.size() != jet.beads())
-      throw InputError("the checkpoint is damaged: its columns have different lengths");
-  };
-  for (std::size_t c = 0; c < table.carried().size(); ++c)
-    checked(table.carried()[c].name, jet.carried(c));
   std::vector<double> y;
+  bool equally_long = true;
+  for (std::size_t c = 0; c < table.carried().size(); ++c)
+    a(table.carried()[c].name, jet.carried(c));
+  for (std::size_t c = 0; c < table.carried().size(); ++c)
+    equally_long &= jet.carried(c).size() == jet.beads();
   for (std::size_t c = 0; c < table.integrated().size(); ++c) {
     std::vector<double> column;
     if (!a.is_reading())
       column.assign(jet.columns().column(c).begin(), jet.columns().column(c).end());
-    checked(table.integrated()[c].name, column);
+    a(table.integrated()[c].name, column);
+    equally_long &= column.size() == jet.beads();
     y.insert(y.end(), column.begin(), column.end());
   }
+  if (jet.beads() < 2 || !equally_long)
+    throw InputError("the checkpoint is damaged: its columns have different lengths");
   jet.y = std::move(y);
 }
 
