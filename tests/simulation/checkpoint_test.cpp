@@ -286,8 +286,8 @@ TEST(Checkpoint, keeps_how_strict_a_solver_has_become) {
   }
 }
 
-// The treecode is cheaper by less than is worth a switch: the direct sum stays, for those who know
-// that it was there.
+// The fast multipole method is cheaper by less than is worth a switch: the direct sum stays,
+// because it was in use before.
 TEST(Checkpoint, keeps_the_choice_of_the_automatic_solver) {
   Scene scene = case_one("dormand-prince", 1e-6);
   scene.config.coulomb = CoulombConfig{.solver = "auto", .tolerance = 1e-3, .leaf = 8};
@@ -300,7 +300,7 @@ TEST(Checkpoint, keeps_the_choice_of_the_automatic_solver) {
   const Checkpoint& last = whole.checkpoints.back();
   EXPECT_EQ(last.at("dynamics.Coulomb.solver.charges").at(0), beads);
   EXPECT_EQ(last.at("dynamics.Coulomb.solver.chosen").at(0), 0);
-  EXPECT_EQ(scene.costs->cheapest(static_cast<std::size_t>(beads), 1e-3), "treecode");
+  EXPECT_EQ(scene.costs->cheapest(static_cast<std::size_t>(beads), 1e-3), "fmm");
 }
 
 // What the run was to end at later has no say in it.
