@@ -27,7 +27,7 @@ Force force_from(const PointCharges& sources, const PointCharges& targets,
 double worst_error(const PointCharges& sources, const PointCharges& targets,
                    const Force& force) {
   Chain c; // one target at a time in front of the sources
-  c.add({}, 0);
+  c.add(Vec3::Zero(), 0);
   for (std::size_t j = 0; j < sources.size(); ++j) c.add(sources.r[j], sources.q[j]);
   double worst = 0;
   for (std::size_t k = 0; k < std::min<std::size_t>(targets.size(), 100); ++k) {
