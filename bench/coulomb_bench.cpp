@@ -30,15 +30,16 @@ struct Jet {
       , fx(n)
       , fy(n)
       , fz(n) {
-    constexpr int fine = 200000; // points of the arc length table
+    constexpr std::size_t fine = 200000; // points of the arc length table
+    const auto at = [](double place) { return point(place / double(fine)); };
     std::vector<double> arc(fine + 1);
-    for (int k = 1; k <= fine; ++k)
-      arc[k] = arc[k - 1] + (point(double(k) / fine) - point(double(k - 1) / fine)).norm();
-    int k = 1;
+    for (std::size_t k = 1; k <= fine; ++k)
+      arc[k] = arc[k - 1] + (at(double(k)) - at(double(k - 1))).norm();
+    std::size_t k = 1;
     for (std::size_t i = 0; i < n; ++i) {
       const double s = arc[fine] * static_cast<double>(i) / static_cast<double>(n - 1);
       while (k < fine && arc[k] < s) ++k;
-      const Vec3 r = point((k - 1 + (s - arc[k - 1]) / (arc[k] - arc[k - 1])) / fine);
+      const Vec3 r = at(double(k - 1) + (s - arc[k - 1]) / (arc[k] - arc[k - 1]));
       x[i] = r.x(), y[i] = r.y(), z[i] = r.z();
       q[i] = 1e-10 * (1 + 0.1 * std::sin(14 * M_PI * s / arc[fine]));
     }

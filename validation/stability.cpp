@@ -380,8 +380,7 @@ std::vector<double> sorted(const std::vector<Measured>& map, double Point::*memb
   for (const Measured& m : map)
     if (m.point.in_main_slice()) values.push_back(m.point.*member);
   std::ranges::sort(values);
-  const auto repeated = std::ranges::unique(values);
-  values.erase(repeated.begin(), repeated.end());
+  values.erase(std::unique(values.begin(), values.end()), values.end());
   return values;
 }
 

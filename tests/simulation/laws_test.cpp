@@ -112,7 +112,8 @@ TEST(Simulation, a_step_allocates_nothing_while_the_chain_stays) {
   for (const std::string& method : methods) {
     if (method == "auto") continue;
     auto simulation = build_simulation(case_one(method, suitable(method)));
-    long before = 0, allocated = 0, steps = 0, since_event = 0;
+    std::size_t before = 0, allocated = 0;
+    long steps = 0, since_event = 0;
     std::uint64_t events = 0;
     simulation->after_each_step([&](const Simulation& s) {
       // The step after an event meets a chain of another size.
@@ -124,7 +125,7 @@ TEST(Simulation, a_step_allocates_nothing_while_the_chain_stays) {
     });
     simulation->run_until(1e-3);
     EXPECT_GT(steps, 30) << method;
-    EXPECT_EQ(allocated, 0) << method;
+    EXPECT_EQ(allocated, 0U) << method;
   }
 }
 

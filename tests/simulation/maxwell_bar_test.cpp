@@ -48,10 +48,10 @@ TEST(MaxwellBar, rings_in_its_eigenmodes_at_the_rates_of_the_dispersion_relation
     const Vec3 direction(1. / 3, 2. / 3, -2. / 3);
     std::vector<double> w; // amplitude of the mode's velocity
     auto simulation = build_simulation(bar(mode, direction));
-    simulation->add(std::make_unique<Watch>(h, [&](const JetSnapshot& s) {
+    simulation->add(std::make_unique<Watch>(h, [&, number = mode](const JetSnapshot& s) {
       double amplitude = 0;
       for (std::size_t k = 1; k <= free_beads; ++k)
-        amplitude += s.columns.velocity()[k].dot(direction) * shape(mode, k);
+        amplitude += s.columns.velocity()[k].dot(direction) * shape(number, k);
       w.push_back(amplitude);
     }));
     simulation->run_until(1e-3);
