@@ -145,7 +145,8 @@ std::span<const Flow> Balance::flows(const JetState& jet) {
 // With the force f of a term and its energy U,
 //
 //     d/dt (kinetic energy + U) = sum of f.v over beads that move + dU/dt
-//                               = - sum of f.dr/dt over beads that are led + dU/dq_1 dq_1/dt
+//                               = - sum of f.dr/dt over beads that are led
+//                                 + dU/dt by what bead 1 carries
 //
 // plus what the term itself says it exchanges. Without energy the first sum is what it brings in.
 void Balance::add_flows(const ActingChain& chain, ForceTerm& term,
@@ -175,9 +176,9 @@ void Balance::add_flows(const ActingChain& chain, ForceTerm& term,
     }
   }
   const Inflow* inflow = chain.constraints().inflow;
-  if (stores && chain.has_led_bead())
-    exchange.by_support_of(1).energy +=
-        inflow->charging(chain.full_content(), stage.columns) * term.potential(stage, 1);
+  if (stores && chain.changes_content())
+    exchange.by_inflow().energy += term.feeding_power(
+        stage, inflow->content_rate(chain.full_content(), stage.columns));
   term.add_power(stage, exchange);
 }
 

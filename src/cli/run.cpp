@@ -69,6 +69,12 @@ std::string summary(const RunResult& result, const Scene& scene,
                         cost.insertions, cost.releases, cost.landings);
   if (cost.refinements)
     text += fmt::format("  refinements   {} that changed the mesh\n", *cost.refinements);
+  if (result.tension)
+    text +=
+        fmt::format("  tension       negative in {:.3g} % of the links, at least {:.3g} N; "
+                    "shortest link {:.3g} radii\n",
+                    100 * result.tension->unstable_links, result.tension->smallest,
+                    result.tension->shortest_in_radii);
   if (!result.coulomb_method.empty())
     text += fmt::format("  Coulomb       {}\n", result.coulomb_method);
   if (cost.method)

@@ -15,6 +15,8 @@ void ActingChain::bind(const JetState& jet, std::optional<double> absorbing_plan
   changes_content_ = inflow != nullptr && inflow->changes_content(has_led_bead_);
   if (changes_content_)
     full_ = {.volume = volume_[1], .mass = mass_[1], .charge = charge_[1]};
+  fed_since_ = jet.fed_since;
+  feed_ = inflow != nullptr ? inflow->feed() : std::nullopt;
 
   held_.clear();
   if (inflow != nullptr || constraints_.ends.first) held_.push_back(0);
@@ -26,7 +28,13 @@ void ActingChain::bind(const JetState& jet, std::optional<double> absorbing_plan
   moves_.assign(mass_.size(), 1);
   for (const std::size_t k : held_) moves_[k] = 0;
 
+  stage_.link_charge = charge_;
+  if (constraints_.grounded_collector) {
+    link_charge_ = charge_, stage_.link_charge = link_charge_;
+    for (const LandedBead& b : landed_) charge_[b.bead] = 0;
+  }
   stage_.mass = mass_, stage_.charge = charge_, stage_.volume = volume_;
+  stage_.feed = feed_ ? &*feed_ : nullptr;
   stage_.declared = declared_;
   stage_.first = jet.first(), stage_.landed = landed_, stage_.moves = moves_;
 }
@@ -43,8 +51,9 @@ const Stage& ActingChain::at(double t, std::span<const double> y, BeadRange targ
   if (absorbing_plane_) absorb(y);
   if (changes_content_) {
     const LinkContent now =
-        constraints_.inflow->acting(full_, t, stage_.columns.position());
+        constraints_.inflow->acting(full_, fed_since_, t, stage_.columns.position());
     volume_[1] = now.volume, mass_[1] = now.mass, charge_[1] = now.charge;
+    if (!link_charge_.empty()) link_charge_[1] = now.charge;
     inverse_mass_[1] = 1 / now.mass;
   }
   return stage_;
@@ -56,7 +65,7 @@ const Stage& ActingChain::at(double t, std::span<const double> y, BeadRange targ
 //
 // To fly on with the velocity of the crossing is right to second order in the time since then,
 // which is less than a step. All beads but the last one of those that have passed have left the
-// chain and act on no other bead.
+// chain and act on no other bead. On a grounded collector that one does not act either.
 void ActingChain::absorb(std::span<const double> y) {
   const auto r = stage_.columns.position(), v = stage_.columns.velocity();
   const auto rests = [&](std::size_t k) { return support(k) == Support::collector; };
@@ -77,7 +86,7 @@ void ActingChain::absorb(std::span<const double> y) {
   charge_before_.clear();
   for (const std::size_t k : absorbed_) {
     charge_before_.push_back(charge_[k]);
-    if (k != absorbed_.back()) charge_[k] = 0;
+    if (k != absorbed_.back() || constraints_.grounded_collector) charge_[k] = 0;
     if (rests(k)) continue;
     const double late = v.x[k] > 0 ? (r.x[k] - *absorbing_plane_) / v.x[k] : 0.0;
     place.set(k, r[k] - late * v[k]);

@@ -11,11 +11,22 @@ namespace ehdjet {
 
 void JetDynamics::set_inflow(std::shared_ptr<const Inflow> inflow) {
   inflow_ = std::move(inflow);
-  chain_.constrain({.inflow = inflow_.get(), .ends = constraints().ends});
+  feeds_ = inflow_ && inflow_->feed();
+  Constraints c = constraints();
+  c.inflow = inflow_.get();
+  chain_.constrain(c);
 }
 
 void JetDynamics::hold(HeldEnds ends) {
-  chain_.constrain({.inflow = inflow_.get(), .ends = ends});
+  Constraints c = constraints();
+  c.ends = ends;
+  chain_.constrain(c);
+}
+
+void JetDynamics::ground_collector() {
+  Constraints c = constraints();
+  c.grounded_collector = true;
+  chain_.constrain(c);
 }
 
 void JetDynamics::bind(const JetState& jet) {

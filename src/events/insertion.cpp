@@ -41,20 +41,23 @@ void EmbryoInflow::prescribe(double t, bool has_led_bead, JetColumns<double> y) 
   if (has_led_bead) y.position().set(1, embryo_.position(place, y.position()[2]));
 }
 
-LinkContent EmbryoInflow::acting(const LinkContent& full, double /*t*/,
+LinkContent EmbryoInflow::acting(const LinkContent& full, double /*since*/, double /*t*/,
                                  ConstVec3View r) const {
   LinkContent now = full;
   now.charge *= embryo_.charge_fraction((r[2] - r[0]).norm());
   return now;
 }
 
-double EmbryoInflow::charging(const LinkContent& full, JetColumns<const double> y) const {
+LinkContent EmbryoInflow::content_rate(const LinkContent& full,
+                                       JetColumns<const double> y) const {
   const auto r = y.position(), v = y.velocity();
   Vec3 nozzle_velocity = v[0];
   nozzle_velocity.x() = 0;
   const Vec3 segment = r[2] - r[0];
   const double d = segment.norm(), rate = segment.dot(v[2] - nozzle_velocity) / d;
-  return full.charge * embryo_.charge_fraction_slope(d) * rate;
+  return {.volume = 0,
+          .mass = 0,
+          .charge = full.charge * embryo_.charge_fraction_slope(d) * rate};
 }
 
 // At l u from the nozzle, u the direction from there to bead 2.

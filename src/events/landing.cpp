@@ -3,6 +3,8 @@
 #include "ehdjet/events/root.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <utility>
 #include <vector>
 
@@ -35,12 +37,23 @@ Channel Landing::channel() const {
 }
 
 bool Landing::due(const JetState& jet) const {
-  const auto x = jet.columns().position().x;
   bool any = false;
   for_each_arrival(
-      jet, [&](std::size_t k) { return x[k] >= distance_; },
+      jet, [&](std::size_t k) { return has_arrived(jet, k); },
       [&](std::size_t) { any = true; });
   return any;
+}
+
+double Landing::touching_distance(const JetState& jet, std::size_t bead) {
+  if (bead + 1 != jet.links() || !jet.is_landed(bead + 1)) return 0;
+  return std::cbrt(jet.volume[bead + 1] / std::numbers::pi);
+}
+
+bool Landing::has_arrived(const JetState& jet, std::size_t bead) const {
+  const ConstVec3View r = jet.columns().position();
+  if (r.x[bead] >= distance_) return true;
+  const double touching = touching_distance(jet, bead);
+  return touching > 0 && (r[bead + 1] - r[bead]).norm() <= touching;
 }
 
 std::optional<double> Landing::locate(const DenseStep& step) {
@@ -55,8 +68,13 @@ std::optional<double> Landing::locate(const DenseStep& step) {
                            }).value_or(1.0);
         found.emplace_back(theta, k);
       });
-  if (found.empty()) return std::nullopt;
+  const auto touch = first_touch(step);
+  if (found.empty() && !touch) return std::nullopt;
   std::ranges::sort(found);
+  if (touch && (found.empty() || *touch <= found.front().first)) {
+    located_ = step.jet.links() - 1;
+    return touch;
+  }
 
   std::size_t last = step.jet.links(); // that has not landed
   while (step.jet.is_landed(last)) --last;
@@ -68,6 +86,21 @@ std::optional<double> Landing::locate(const DenseStep& step) {
   }
   for (const auto& [theta, k] : found) passing_.push_back(arrival_inside(step, k, theta));
   return std::nullopt;
+}
+
+// When the bead above a resting leading bead touches it.
+std::optional<double> Landing::first_touch(const DenseStep& step) const {
+  const std::size_t k = step.jet.links() - 1;
+  if (k < std::max(step.jet.first(), first_bead_) || step.jet.is_landed(k))
+    return std::nullopt;
+  const double touching = touching_distance(step.jet, k);
+  if (touching == 0) return std::nullopt;
+  const Vec3 resting = step.jet.columns().position()[k + 1];
+  const auto excess = [&](double theta) {
+    return touching - (step.position(theta, k) - resting).norm();
+  };
+  if (excess(0) >= 0) return std::nullopt; // then it is due without being located
+  return first_crossing(excess);
 }
 
 // Beads may have other numbers after that event.
@@ -116,9 +149,8 @@ void Landing::apply(EventContext& context) {
 std::vector<Landing::Arrival> Landing::arrivals(const JetState& jet) const {
   if (located_) return {arrival_now(jet, *located_)};
   std::vector<Arrival> arrived;
-  const auto x = jet.columns().position().x;
   for_each_arrival(
-      jet, [&](std::size_t k) { return x[k] >= distance_; },
+      jet, [&](std::size_t k) { return has_arrived(jet, k); },
       [&](std::size_t k) {
         const auto passed = std::ranges::find(passing_, k, &Arrival::bead);
         arrived.push_back(passed != passing_.end() ? *passed : arrival_now(jet, k));

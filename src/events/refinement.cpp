@@ -32,6 +32,28 @@ JetTotals difference(const JetTotals& after, const JetTotals& before) {
           .coulomb_energy = after.coulomb_energy - before.coulomb_energy};
 }
 
+/// Joins and cuts links as the rule says, counts it and records it if there are totals.
+void change_mesh(EventContext& context, const RefinementRule& rule,
+                 const Refinement::Totals& totals,
+                 std::optional<MeshChange> (*cut_anew)(JetState&, const RefinementRule&)) {
+  JetState& jet = context.jet;
+  const JetTotals before = totals ? totals(jet) : JetTotals{};
+  const std::size_t beads_before = jet.links();
+  const auto joined = rule.coarsen ? coarsen_jet(jet, rule) : std::nullopt;
+  const auto cut = at_time(jet.time, [&] { return cut_anew(jet, rule); });
+  if (!joined && !cut) return;
+  auto& count = context.statistics.refinements;
+  count = count.value_or(0) + 1;
+  if (!totals) return;
+  context.refined.push_back(
+      {.time = jet.time,
+       .kept = std::min(joined ? joined->kept : jet.links(), cut ? cut->kept : jet.links()),
+       .beads_before = beads_before,
+       .beads_after = jet.links(),
+       .change = difference(totals(jet), before),
+       .worst_link = cut ? cut->worst_link : 0});
+}
+
 } // namespace
 
 Refinement::Refinement(const RefinementRule& rule, double interval, Totals totals,
@@ -66,29 +88,31 @@ void Refinement::pass(double t) {
 }
 
 bool Refinement::changes(const JetState& jet) const {
-  if (rule_.coarsen)
-    if (JetState copy = jet; coarsen_jet(copy, rule_)) return true;
+  if (has_short_links(jet, rule_)) return true;
   return plan_mesh(JetString(jet), rule_.first_knot(), rule_.length).has_value();
 }
 
 void Refinement::apply(EventContext& context) {
-  JetState& jet = context.jet;
-  pass(jet.time);
-  const JetTotals before = totals_ ? totals_(jet) : JetTotals{};
-  const std::size_t beads_before = jet.links();
-  const auto joined = rule_.coarsen ? coarsen_jet(jet, rule_) : std::nullopt;
-  const auto cut = at_time(jet.time, [&] { return refine_jet(jet, rule_); });
-  if (!joined && !cut) return;
-  auto& count = context.statistics.refinements;
-  count = count.value_or(0) + 1;
-  if (!totals_) return;
-  context.refined.push_back(
-      {.time = jet.time,
-       .kept = std::min(joined ? joined->kept : jet.links(), cut ? cut->kept : jet.links()),
-       .beads_before = beads_before,
-       .beads_after = jet.links(),
-       .change = difference(totals_(jet), before),
-       .worst_link = cut ? cut->worst_link : 0});
+  pass(context.jet.time);
+  change_mesh(context, rule_, totals_, refine_jet);
+}
+
+LinkCuts::LinkCuts(const RefinementRule& rule, std::optional<double> interval,
+                   Refinement::Totals totals)
+    : rule_(rule)
+    , totals_(std::move(totals)) {
+  if (interval) schedule_.emplace(*interval, 1);
+}
+
+bool LinkCuts::due(const JetState& jet) const {
+  if (schedule_ && jet.time < schedule_->next() * (1 - round_off)) return false;
+  return has_long_link(jet, rule_) || has_short_links(jet, rule_);
+}
+
+void LinkCuts::apply(EventContext& context) {
+  if (schedule_)
+    while (schedule_->next() <= context.jet.time * (1 + round_off)) schedule_->advance();
+  change_mesh(context, rule_, totals_, cut_links);
 }
 
 } // namespace ehdjet

@@ -65,9 +65,9 @@ double CoulombForce::energy_change(const Stage& before, const Stage& after) {
          - energy_of_some(r, before.charge, head, m - tail);
 }
 
-double CoulombForce::potential(const Stage& stage, std::size_t bead) {
+double CoulombForce::feeding_power(const Stage& stage, const LinkContent& rate) {
   const auto r = stage.columns.position();
-  return constants::coulomb * pair_sum(r[bead], r, stage.charge, bead).potential;
+  return rate.charge * (constants::coulomb * pair_sum(r[1], r, stage.charge, 1).potential);
 }
 
 void CoulombForce::add_force_on(std::span<const std::size_t> beads, const Stage& stage,

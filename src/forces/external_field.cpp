@@ -29,8 +29,8 @@ double ExternalField::energy(const Stage& stage) {
   return energy;
 }
 
-double ExternalField::potential(const Stage& stage, std::size_t bead) {
-  return -strength_ * stage.columns.position().x[bead];
+double ExternalField::feeding_power(const Stage& stage, const LinkContent& rate) {
+  return rate.charge * (-strength_ * stage.columns.position().x[1]);
 }
 
 } // namespace ehdjet

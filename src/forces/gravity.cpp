@@ -29,4 +29,8 @@ double Gravity::energy(const Stage& stage) {
   return energy;
 }
 
+double Gravity::feeding_power(const Stage& stage, const LinkContent& rate) {
+  return -rate.mass * acceleration_ * stage.columns.position().x[1];
+}
+
 } // namespace ehdjet

@@ -2,6 +2,8 @@
 
 #include "ehdjet/core/error.hpp"
 
+#include <cmath>
+
 #include "link_tension.hpp"
 
 namespace ehdjet {
@@ -54,6 +56,8 @@ void Maxwell::set_column_rates(const Stage& stage, JetColumns<double> rates) {
   if (begin == links.head && begin < links.beads.end) link(begin++, 0);
 #pragma omp simd
   for (std::size_t k = begin; k < links.beads.end; ++k) link(k, k - 1);
+  if (stage.feed != nullptr && links.beads.begin <= 1 && links.beads.end > 1)
+    out[1] = fed_rate(stage);
 
   // A landed bead keeps the velocity of its impact as a record, but it is at rest.
   for (const LandedBead& b : stage.landed) {
@@ -62,6 +66,31 @@ void Maxwell::set_column_rates(const Stage& stage, JetColumns<double> rates) {
     const double impact = vx[b.bead] * dx[k] + vy[b.bead] * dy[k] + vz[b.bead] * dz[k];
     out[k] += g * impact / (l[k] * l[k]);
   }
+}
+
+// Fluid that enters link 1 takes its section A_1 at once, which stretches it elastically:
+//
+//     sigma_e = sigma_in + G ln(A0/A_1),   A_1 = V_1/l_1                               (model 4.3)
+double Maxwell::entry_stress(const Stage& stage) const {
+  const double section = stage.volume[1] / stage.links().length[1];
+  return stage.feed->stress + elastic_modulus_ * std::log(stage.feed->section / section);
+}
+
+// The fluid that is in link 1 already is strained by -d ln A_1/dt: its upper end moves at Q/A_1. New
+// fluid is mixed in by volume.
+//
+//     dsigma_1/dt = G ((v_1 - w0).t_1/l_1 - Q/V_1) - sigma_1/tau + (Q/V_1) (sigma_e - sigma_1)
+//                                                                                    (model 4.3)
+double Maxwell::fed_rate(const Stage& stage) const {
+  const auto v = stage.columns.velocity();
+  Vec3 nozzle = v[0];
+  nozzle.x() = 0; // w0: the nozzle stays in its plane
+  const double l = stage.links().length[1];
+  const double stretching = (v[1] - nozzle).dot(stage.links().vector(1)) / (l * l);
+  const double filling = stage.feed->flow_rate / stage.volume[1];
+  const double sigma = stage.columns.column(stress_)[1];
+  return elastic_modulus_ * (stretching - filling) - relaxation_rate_ * sigma
+         + filling * (entry_stress(stage) - sigma);
 }
 
 // With F = V sigma d/l^2, sigma' = G (w.d)/l^2 - sigma/tau:
@@ -79,7 +108,9 @@ void Maxwell::add_derivatives(const Stage& stage, LinkDerivatives& out) {
     const bool rests = landed != stage.landed.end() && landed->bead == upstream;
     const double l = links.length[k], stiffness = elastic_modulus_ / (l * l);
     const Vec3 d = links.vector(k), t = d / l;
-    const Vec3 w = rests ? v[k] : Vec3(v[k] - v[upstream]);
+    const bool fed = stage.feed != nullptr && k == 1;
+    Vec3 w = rests ? v[k] : Vec3(v[k] - v[upstream]);
+    if (fed) w.x() = v.x[k]; // relative to the nozzle, not to the fluid in it
     const double area_per_length = stage.volume[k] / (l * l);
     out.add_pull(k,
                  area_per_length * sigma[k] * (Mat3::Identity() - 2 * t * t.transpose()));
@@ -87,6 +118,10 @@ void Maxwell::add_derivatives(const Stage& stage, LinkDerivatives& out) {
     out.stretching[k] += stiffness * d;
     out.turning[k] += stiffness * (w - 2 * w.dot(t) * t);
     out.relaxation[k] += relaxation_rate_;
+    if (!fed) continue;
+    const double filling = stage.feed->flow_rate / stage.volume[k];
+    out.relaxation[k] += filling;
+    out.turning[k] += filling * elastic_modulus_ / (l * l) * d; // G ln(l_1)
   }
 }
 
@@ -129,9 +164,29 @@ void Maxwell::add_power(const Stage& stage, Exchange& exchange) {
     }
     exchange.own.energy -=
         volume * sigma[k] * sigma[k] * relaxation_rate_ / elastic_modulus_;
+    if (stage.feed != nullptr && k == 1) {
+      // New fluid brings sigma_e^2/(2 G) per volume, and loses (sigma - sigma_e)^2/(2 G) when it is
+      // mixed in; that it flows in against the tension costs Q sigma.
+      const double sigma_1 = sigma[k], mixed = sigma_1 - entry_stress(stage);
+      exchange.by_support_of(up).energy -=
+          stage.feed->flow_rate * sigma_1 * (1 + mixed / elastic_modulus_);
+      continue;
+    }
     if (!up_moves && exchange.support(up) != Support::collector)
       exchange.by_support_of(up).energy -= pull.dot(v[up] - exchange.led(up));
   }
+}
+
+double Maxwell::feeding_power(const Stage& stage, const LinkContent& rate) {
+  const double sigma = stage.columns.column(stress_)[1];
+  return rate.volume * sigma * sigma / (2 * elastic_modulus_);
+}
+
+void Maxwell::add_tension(const Stage& stage, std::span<double> tension) {
+  const Links& links = stage.links();
+  const auto sigma = stage.columns.column(stress_);
+  for (std::size_t k = links.first; k <= links.last; ++k)
+    tension[k] += stage.volume[k] * sigma[k] / links.length[k];
 }
 
 } // namespace ehdjet

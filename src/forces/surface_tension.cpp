@@ -87,6 +87,18 @@ double LineSurfaceTension::energy(const Stage& stage) {
   return energy;
 }
 
+double LineSurfaceTension::feeding_power(const Stage& stage, const LinkContent& rate) {
+  const double l = stage.links().length[1];
+  return coefficient_ * std::sqrt(std::numbers::pi * l / stage.volume[1]) * rate.volume;
+}
+
+void LineSurfaceTension::add_tension(const Stage& stage, std::span<double> tension) {
+  const Links& links = stage.links();
+  for (std::size_t k = links.first; k <= links.last; ++k)
+    tension[k] +=
+        coefficient_ * std::sqrt(std::numbers::pi * stage.volume[k] / links.length[k]);
+}
+
 // With F = alpha sqrt(pi V) d l^(-3/2): dF/dd = alpha sqrt(pi V) l^(-3/2) (I - 3/2 t t^T).
 void LineSurfaceTension::add_derivatives(const Stage& stage, LinkDerivatives& out) {
   const Links& links = stage.links();

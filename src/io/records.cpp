@@ -69,6 +69,19 @@ std::vector<RecordColumn<Row>> with(bool wanted, std::string_view name,
   return columns;
 }
 
+/// Appends the columns of `accounts`, the first of which has the others measured.
+void append(std::vector<RecordColumn<JetSnapshot>>& columns,
+            const std::shared_ptr<Accounts>& accounts) {
+  const auto given = accounts->columns();
+  const auto row = std::make_shared<std::vector<double>>(given.size());
+  for (std::size_t i = 0; i < given.size(); ++i)
+    columns.push_back({{given[i].name, given[i].unit, given[i].description},
+                       [accounts, row, i](const JetSnapshot& s) {
+                         if (i == 0) accounts->measure(s, *row);
+                         return (*row)[i];
+                       }});
+}
+
 /// One list of columns that are as long as the jet has beads, and where each frame ends in them.
 class Frames final : public Observer {
 public:
@@ -126,10 +139,12 @@ private:
 } // namespace
 
 std::unique_ptr<Observer> record_observables(std::shared_ptr<RunFile> file, double interval,
-                                             bool with_coulomb_error) {
-  return std::make_unique<Record<JetSnapshot>>(
-      std::move(file), "observables",
-      with(with_coulomb_error, "coulomb_error", observable_columns()), interval);
+                                             bool with_coulomb_error,
+                                             std::shared_ptr<Accounts> further) {
+  auto columns = with(with_coulomb_error, "coulomb_error", observable_columns());
+  if (further) append(columns, further);
+  return std::make_unique<Record<JetSnapshot>>(std::move(file), "observables",
+                                               std::move(columns), interval);
 }
 
 std::unique_ptr<Observer> record_frames(std::shared_ptr<RunFile> file, double interval,
@@ -153,20 +168,12 @@ std::unique_ptr<Observer> record_refinements(std::shared_ptr<RunFile> file,
 
 std::unique_ptr<Observer> record_budget(std::shared_ptr<RunFile> file, double interval,
                                         std::shared_ptr<Accounts> accounts) {
-  const auto given = accounts->columns();
-  const auto row = std::make_shared<std::vector<double>>(given.size());
-  // The column of the time comes first and has the others measured.
   std::vector<RecordColumn<JetSnapshot>> columns{
-      {{"time", "s", "of each row"}, [accounts, row](const JetSnapshot& s) {
-         accounts->measure(s, *row);
-         return s.time;
-       }}};
+      {{"time", "s", "of each row"}, [](const JetSnapshot& s) { return s.time; }}};
+  append(columns, accounts);
   std::string names;
-  for (std::size_t i = 0; i < given.size(); ++i) {
-    columns.push_back({{given[i].name, given[i].unit, given[i].description},
-                       [row, i](const JetSnapshot&) { return (*row)[i]; }});
-    names += (i == 0 ? "" : ",") + given[i].name;
-  }
+  for (const auto& column : accounts->columns())
+    names += (names.empty() ? "" : ",") + column.name;
   file->describe("budget", "columns", names);
   return std::make_unique<Record<JetSnapshot>>(std::move(file), "budget",
                                                std::move(columns), interval);

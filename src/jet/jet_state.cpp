@@ -58,7 +58,8 @@ bool JetState::is_landed(std::size_t bead) const {
 
 void archive(const Archive& a, JetState& jet) {
   a("time", jet.time), archive_columns(a.part("columns"), jet);
-  a("has_embryo", jet.has_embryo), a("absorbing_plane", jet.absorbing_plane);
+  a("has_embryo", jet.has_embryo), a("fed_since", jet.fed_since);
+  a("absorbing_plane", jet.absorbing_plane);
   std::vector<double> bead, time, radius;
   for (const LandedBead& l : jet.landed) {
     bead.push_back(static_cast<double>(l.bead));
@@ -81,6 +82,13 @@ JetState blank_jet(std::shared_ptr<const BeadTable> table, std::size_t beads) {
   for (std::size_t c = 0; c < jet.table->carried().size(); ++c)
     jet.carried(c).resize(beads);
   return jet;
+}
+
+JetState blank_like(const JetState& jet, std::size_t beads) {
+  JetState blank = blank_jet(jet.table, beads);
+  blank.time = jet.time, blank.has_embryo = jet.has_embryo;
+  blank.fed_since = jet.fed_since, blank.absorbing_plane = jet.absorbing_plane;
+  return blank;
 }
 
 void insert_bead(JetState& jet, std::size_t at, const Bead& bead) {

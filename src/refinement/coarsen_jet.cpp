@@ -20,6 +20,18 @@ void join_with_next(JetState& jet, std::size_t k) {
       jet.carried(c)[k + 1] += jet.carried(c)[k];
 }
 
+// Whether links k and k + 1 are to become one.
+bool joins_next(const JetState& jet, const RefinementRule& rule, std::size_t k) {
+  const auto r = jet.columns().position();
+  const double both = (r[k] - r[k - 1]).norm() + (r[k + 1] - r[k]).norm();
+  return both <= *rule.coarsen && !jet.is_landed(k) && !jet.is_landed(k + 1);
+}
+
+// The first link is being fed and its bead triggers the next insertion.
+std::size_t first_to_join(const JetState& jet, const RefinementRule& rule) {
+  return (rule.has_nozzle ? jet.first() : 0) + 1;
+}
+
 void remove_beads(JetState& jet, const std::vector<bool>& gone) {
   const std::size_t beads = jet.beads(), columns = jet.table->integrated().size();
   std::vector<std::size_t> place(beads); // of each bead among those that stay
@@ -44,17 +56,20 @@ void remove_beads(JetState& jet, const std::vector<bool>& gone) {
 
 } // namespace
 
+bool has_short_links(const JetState& jet, const RefinementRule& rule) {
+  if (!rule.coarsen) return false;
+  for (std::size_t k = first_to_join(jet, rule); k + 1 < jet.beads(); ++k)
+    if (joins_next(jet, rule, k)) return true;
+  return false;
+}
+
 std::optional<MeshChange> coarsen_jet(JetState& jet, const RefinementRule& rule) {
   EHDJET_EXPECTS(rule.coarsen);
   const std::size_t before = jet.links();
   std::vector<bool> gone(jet.beads(), false);
   std::optional<MeshChange> change;
-  const auto r = jet.columns().position();
-  // The first link is being fed and its bead triggers the next insertion.
-  const std::size_t fed = rule.has_nozzle ? jet.first() : 0;
-  for (std::size_t k = fed + 1; k + 1 < jet.beads(); ++k) {
-    const double both = (r[k] - r[k - 1]).norm() + (r[k + 1] - r[k]).norm();
-    if (both > *rule.coarsen || jet.is_landed(k) || jet.is_landed(k + 1)) continue;
+  for (std::size_t k = first_to_join(jet, rule); k + 1 < jet.beads(); ++k) {
+    if (!joins_next(jet, rule, k)) continue;
     join_with_next(jet, k);
     gone[k] = true;
     if (!change) change = MeshChange{.kept = k - 1, .before = before, .after = 0};

@@ -33,9 +33,7 @@ constexpr std::size_t volume_column = 0; // of the carried ones
 
 // A jet whose beads 0 ... s are those of another one and whose others are still to be filled in.
 JetState with_room(const JetState& old, std::size_t s, std::size_t beads) {
-  JetState jet = blank_jet(old.table, beads);
-  jet.time = old.time, jet.has_embryo = old.has_embryo;
-  jet.absorbing_plane = old.absorbing_plane;
+  JetState jet = blank_like(old, beads);
   for (std::size_t c = 0; c < old.table->integrated().size(); ++c)
     std::ranges::copy(old.columns().column(c).first(s + 1),
                       jet.columns().column(c).begin());

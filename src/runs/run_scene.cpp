@@ -1,6 +1,7 @@
 #include "ehdjet/runs/run_scene.hpp"
 
 #include "ehdjet/budget/budget.hpp"
+#include "ehdjet/budget/effective_tension.hpp"
 #include "ehdjet/core/error.hpp"
 #include "ehdjet/core/version.hpp"
 #include "ehdjet/coulomb/direct_sum.hpp"
@@ -60,8 +61,10 @@ void add_records(Simulation& simulation, const std::shared_ptr<RunFile>& file,
   const SceneConfig& config = scene.config;
   const OutputConfig& output = config.output;
   if (output.observables)
-    simulation.add(record_observables(file, *output.observables,
-                                      config.coulomb && config.coulomb->check_every));
+    simulation.add(record_observables(
+        file, *output.observables, config.coulomb && config.coulomb->check_every,
+        has_near_field(config) ? std::make_shared<EffectiveTension>(simulation.dynamics())
+                               : nullptr));
   if (output.frames)
     simulation.add(record_frames(file, *output.frames, *simulation.jet().table));
   if (output.deposit) simulation.add(record_deposit(file, simulation.jet().table));
@@ -151,6 +154,8 @@ RunResult run_scene(const Scene& scene, const fs::path& path, RunOptions options
                      .statistics = simulation->statistics(),
                      .ledger = simulation->ledger(),
                      .coulomb_method = coulomb_method(*simulation)};
+    if (has_near_field(scene.config) && result.status != "failed")
+      result.tension = EffectiveTension(simulation->dynamics()).of(simulation->jet());
     result.statistics.coincident_pairs = simulation->dynamics().coincident_pairs();
     std::map<std::string, std::string> notes;
     if (!result.coulomb_method.empty()) notes["coulomb"] = result.coulomb_method;

@@ -21,6 +21,54 @@ constexpr double too_many_steps = 1e8;
 /// Fewer steps are refused, too, if stability needs steps that are so much shorter than accuracy's.
 constexpr double many_steps = 1e6, far_below = 1e-3;
 
+/// A key that the scene must give, or must not give.
+template <class Refuse, class T>
+void need(const Refuse& refuse, const char* key, const std::optional<T>& value,
+          const char* with) {
+  if (!value)
+    refuse("", fmt::format("nozzle.{} is missing: it is needed with {}", key, with));
+}
+template <class Refuse, class T>
+void exclude(const Refuse& refuse, const char* key, const std::optional<T>& value,
+             const char* with) {
+  if (value)
+    refuse(key, fmt::format("nozzle.{} = {} has no meaning with {}. Remove it", key, *value,
+                            with));
+}
+
+void check_inflow(const NozzleConfig& n, const SceneText& text) {
+  const auto refuse = [&](const char* key, const std::string& why) {
+    text.fail(*key == 0 ? "nozzle" : fmt::format("nozzle.{}", key), why);
+  };
+  if (n.inflow == InflowKind::embryo) {
+    const char* with = "inflow = \"embryo\" (the default)";
+    need(refuse, "velocity", n.velocity, with);
+    need(refuse, "charge_density", n.charge_density, with);
+    exclude(refuse, "flow_rate", n.flow_rate, with);
+    exclude(refuse, "current", n.current, with);
+    exclude(refuse, "nozzle_stress", n.nozzle_stress, with);
+    exclude(refuse, "nozzle_charge_length", n.nozzle_charge_length, with);
+    return;
+  }
+  const char* with = "inflow = \"pump\"";
+  need(refuse, "flow_rate", n.flow_rate, with);
+  exclude(refuse, "velocity", n.velocity,
+          "inflow = \"pump\": it follows from nozzle.flow_rate and nozzle.radius");
+  if (n.current && n.charge_density)
+    refuse("current",
+           fmt::format("nozzle.current = {} A and nozzle.charge_density = {} C/m^3: their "
+                       "ratio is nozzle.flow_rate. Remove one",
+                       *n.current, *n.charge_density));
+  if (!n.current && !n.charge_density)
+    refuse("", "neither nozzle.current nor nozzle.charge_density is given: exactly one of "
+               "them is needed with inflow = \"pump\"");
+  if (n.insertion_velocity != InsertionVelocity::half)
+    refuse("insertion_velocity",
+           fmt::format("nozzle.insertion_velocity = \"{}\" has no meaning with {}: no bead "
+                       "is released. Remove it",
+                       name_of(n.insertion_velocity, insertion_velocities), with));
+}
+
 void check_jet(const SceneConfig& c, const SceneText& text) {
   if (c.nozzle && c.chain)
     text.fail("chain",
@@ -32,13 +80,14 @@ void check_jet(const SceneConfig& c, const SceneText& text) {
         "neither [nozzle] nor [chain] is given: exactly one of them says what the jet is");
   if (!c.nozzle) return;
 
+  check_inflow(*c.nozzle, text);
   const double a = c.nozzle->radius, l = c.nozzle->link_length;
-  if (a > l)
+  if (a > l && !softens_pairs(c))
     text.fail("nozzle.radius",
               fmt::format(
                   "nozzle.radius = {} m and nozzle.link_length = {} m: the radius must be "
-                  "at most the link length, beads stand for slender pieces of jet. "
-                  "Lengths are in metres",
+                  "at most the link length, beads stand for slender pieces of jet, "
+                  "unless pairs are softened. Lengths are in metres",
                   a, l));
   if (c.collector && c.collector->distance <= 2 * l)
     text.fail("collector.distance",
@@ -128,12 +177,45 @@ void check_adaptive_keys(const IntegratorConfig& i, const SceneText& text) {
                     name, *value, i.min_step));
 }
 
+template <class Refuse>
+void check_near_field(const SceneConfig& c, const Refuse& refuse) {
+  const CoulombConfig& s = *c.coulomb;
+  const bool is_point = s.near_field == NearFieldForm::point;
+  if (is_point && s.softened_pairs.value_or(false))
+    refuse(
+        "softened_pairs",
+        "coulomb.softened_pairs = true and coulomb.near_field = \"point\": only the near "
+        "field of a thread knows what softened pairs leave out. Give coulomb.near_field = "
+        "\"free-surface\"");
+  if (s.softening_range && !softens_pairs(c))
+    refuse("softening_range",
+           fmt::format("coulomb.softening_range = {}: no pairs are softened. Give "
+                       "coulomb.softened_pairs = true with a near field, or remove it",
+                       *s.softening_range));
+  if (s.near_field == NearFieldForm::fixed && c.output.budget)
+    refuse(
+        "near_field",
+        "coulomb.near_field = \"fixed\" and output.budget: the push of a thread of fixed "
+        "radius has no energy. Take \"free-surface\", or remove output.budget");
+  constexpr double shortest = 6; // radii
+  if (c.nozzle && c.nozzle->inflow == InflowKind::pump && !softens_pairs(c)
+      && c.nozzle->link_length < shortest * c.nozzle->radius)
+    refuse(
+        "softened_pairs",
+        fmt::format(
+            "nozzle.inflow = \"pump\", nozzle.link_length = {} m and nozzle.radius = {} m: "
+            "point charges this close collapse. Take links of at least {} radii, or "
+            "coulomb.near_field = \"free-surface\" with softened pairs",
+            c.nozzle->link_length, c.nozzle->radius, shortest));
+}
+
 void check_coulomb(const SceneConfig& c, const SceneText& text) {
   if (!c.coulomb) return;
   const CoulombConfig& s = *c.coulomb;
   const auto refuse = [&](const char* key, const std::string& why) {
     text.fail(fmt::format("coulomb.{}", key), why);
   };
+  check_near_field(c, refuse);
   const bool expands = s.solver != "direct";
   const auto needs_expansions = [&](const char* key, bool given) {
     if (given && !expands)
@@ -168,11 +250,27 @@ void check_refinement(const SceneConfig& c, const SceneText& text) {
                     "least twice that, the length of the link that is being fed. Lengths "
                     "are in metres",
                     r.length, c.nozzle->link_length));
-  if (r.interval >= c.run.end_time * (1 + 1e-9))
+  const bool cuts = r.mesh == RefinedMesh::cut;
+  if (!r.interval && !cuts)
+    text.fail("refinement",
+              "refinement.interval is missing: it is needed with mesh = \"redistribute\"; "
+              "mesh = \"cut\" does without");
+  if (r.interval && *r.interval >= c.run.end_time * (1 + 1e-9))
     refuse("interval",
            fmt::format("refinement.interval = {} s and run.end_time = {} s: no refinement "
                        "would happen",
-                       r.interval, c.run.end_time));
+                       *r.interval, c.run.end_time));
+  const RefinementConfig usual;
+  const auto is_of_redistribution = [&](const char* key, bool given) {
+    if (cuts && given)
+      refuse(key,
+             fmt::format("refinement.{} has no meaning with mesh = \"cut\": links that "
+                         "are cut share out what they carry. Remove it",
+                         key));
+  };
+  is_of_redistribution("remap", r.remap != usual.remap);
+  is_of_redistribution("velocity", r.velocity != usual.velocity);
+  is_of_redistribution("stress", r.stress != usual.stress);
   if (r.coarsen && *r.coarsen > r.length / 2)
     refuse(
         "coarsen",
@@ -185,6 +283,10 @@ void check_varicosity(const SceneConfig& c, const SceneText& text) {
   if (!c.varicosity) return;
   if (!c.nozzle)
     text.fail("varicosity", "[varicosity] needs [nozzle]: no bead is born without one");
+  if (c.nozzle->inflow == InflowKind::pump)
+    text.fail("varicosity",
+              "[varicosity] and nozzle.inflow = \"pump\": a pump feeds a uniform fluid. "
+              "Remove one");
   if (!c.varicosity->mass && !c.varicosity->volume && !c.varicosity->charge)
     text.fail("varicosity",
               "varicosity.mass, varicosity.volume and varicosity.charge are all "

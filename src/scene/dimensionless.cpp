@@ -20,11 +20,11 @@ std::optional<DimensionlessGroups> dimensionless_groups(const SceneConfig& confi
   const NozzleConfig& n = *config.nozzle;
   const double G = config.viscoelasticity->elastic_modulus;
   const double mu = config.viscoelasticity->viscosity;
-  if (G == 0 || mu == 0 || n.charge_density == 0) return std::nullopt;
+  if (G == 0 || mu == 0 || n.fluid_charge_density() == 0) return std::nullopt;
 
   const double section = std::numbers::pi * n.radius * n.radius;
   const double m = n.density * section * n.link_length;
-  const double q = n.charge_density * section * n.link_length;
+  const double q = n.fluid_charge_density() * section * n.link_length;
   const double tau = mu / G;
   const double L0 = std::sqrt(constants::coulomb * q * q / (section * G));
 

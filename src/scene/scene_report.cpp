@@ -87,6 +87,10 @@ std::string forces_text(const Scene& scene) {
   if (c.gravity)
     forces.push_back(fmt::format("gravity {:.6g} m/s^2", c.gravity->acceleration));
   if (c.coulomb) forces.push_back(fmt::format("Coulomb ({})", coulomb_text(scene)));
+  if (has_near_field(c))
+    forces.push_back(fmt::format("near field ({}{})",
+                                 name_of(c.coulomb->near_field, near_field_forms),
+                                 softens_pairs(c) ? ", softened pairs" : ""));
   if (c.viscoelasticity)
     forces.emplace_back(c.viscoelasticity->elastic_modulus > 0
                                 && c.viscoelasticity->viscosity > 0
@@ -126,6 +130,13 @@ std::string jet_text(const Scene& scene) {
     return fmt::format("a chain of {} beads from {}, fixed ends: {}; nothing is inserted",
                        scene.chain.size(), c.chain->file,
                        name_of(c.chain->fixed, fixed_ends));
+  if (c.nozzle->inflow == InflowKind::pump)
+    return fmt::format(
+        "fed by a pump at {:.6g} m^3/s and {:.6g} A; v_s = {:.6g} m/s, a new "
+        "bead every {:.4g} s",
+        *c.nozzle->flow_rate, *c.nozzle->flow_rate * c.nozzle->fluid_charge_density(),
+        c.nozzle->fluid_velocity(),
+        c.nozzle->section() * c.nozzle->link_length / *c.nozzle->flow_rate);
   return "born at the nozzle: a link that reaches 1.5 link lengths gets a new bead, "
          "released at 2 "
          "link lengths";
@@ -133,9 +144,13 @@ std::string jet_text(const Scene& scene) {
 
 std::string refinement_text(const SceneConfig& c) {
   const RefinementConfig& r = *c.refinement;
+  const std::string when =
+      r.interval ? fmt::format("every {} s", *r.interval) : "at the end of every step";
   std::string text =
-      fmt::format("  refinement: every {} s, where links are longer than {} m; {} remap",
-                  r.interval, r.length, name_of(r.remap, refinement_remaps));
+      r.mesh == RefinedMesh::cut
+          ? fmt::format("  refinement: {}, links longer than {} m are cut", when, r.length)
+          : fmt::format("  refinement: {}, where links are longer than {} m; {} remap",
+                        when, r.length, name_of(r.remap, refinement_remaps));
   if (r.coarsen) text += fmt::format("; links together below {} m are joined", *r.coarsen);
   return text + '\n';
 }
@@ -159,10 +174,11 @@ std::string run_text(const Scene& scene) {
   const auto& i = c.integrator;
   std::string text = "\nWhat will be simulated\n";
   text += fmt::format("  jet: {}\n  forces: {}\n", jet_text(scene), forces_text(scene));
-  text += c.collector
-              ? fmt::format("  collector: beads land at x = {} m and leave the chain\n",
-                            c.collector->distance)
-              : "  collector: none, beads fly on\n";
+  text += c.collector ? fmt::format(
+              "  collector: beads land at x = {} m and leave the chain; their charge is "
+              "{}\n",
+              c.collector->distance, name_of(c.collector->charge, collector_charges))
+                      : "  collector: none, beads fly on\n";
   if (c.varicosity)
     text += fmt::format(
         "  varicosity: every {}th bead has {} times the{}{}{}\n", c.varicosity->every,

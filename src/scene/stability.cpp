@@ -79,7 +79,7 @@ double StabilityLimits::least() const {
 
 LinkState link_state(const Scene& scene, std::size_t k) {
   if (const auto& n = scene.config.nozzle)
-    return {n->link_length, n->radius, n->density, n->charge_density};
+    return {n->link_length, n->radius, n->density, n->fluid_charge_density()};
   const ChainBeads& b = scene.chain;
   EHDJET_EXPECTS(k >= 1 && k < b.size());
   const double l =

@@ -4,11 +4,16 @@
 #include "ehdjet/coulomb/make_solver.hpp"
 #include "ehdjet/events/insertion.hpp"
 #include "ehdjet/events/landing.hpp"
+#include "ehdjet/events/pump.hpp"
 #include "ehdjet/events/refinement.hpp"
 #include "ehdjet/forces/coulomb_force.hpp"
 #include "ehdjet/forces/external_field.hpp"
+#include "ehdjet/forces/feed_momentum.hpp"
 #include "ehdjet/forces/gravity.hpp"
 #include "ehdjet/forces/maxwell.hpp"
+#include "ehdjet/forces/near_field.hpp"
+#include "ehdjet/forces/nozzle_thread.hpp"
+#include "ehdjet/forces/softened_pairs.hpp"
 #include "ehdjet/forces/surface_tension.hpp"
 #include "ehdjet/integrators/make_integrator.hpp"
 #include "ehdjet/scene/dimensionless.hpp"
@@ -20,7 +25,7 @@ namespace ehdjet {
 namespace {
 
 Nozzle nozzle_of(const NozzleConfig& c) {
-  return {.fluid_velocity = c.velocity,
+  return {.fluid_velocity = c.fluid_velocity(),
           .amplitude = c.amplitude,
           .angular_frequency = c.angular_frequency,
           .phase = c.phase};
@@ -49,26 +54,36 @@ RefinementRule refinement_rule(const SceneConfig& c) {
 std::shared_ptr<const InflowRule> build_inflow(const SceneConfig& c) {
   if (!c.nozzle) return nullptr;
   const NozzleConfig& n = *c.nozzle;
+  if (n.inflow == InflowKind::pump)
+    return std::make_shared<PumpInflow>(
+        nozzle_of(n), PumpInflow::Rule{.link_length = n.link_length,
+                                       .feed = {.flow_rate = *n.flow_rate,
+                                                .density = n.density,
+                                                .section = n.section(),
+                                                .stress = n.nozzle_stress.value_or(0)},
+                                       .charge_density = n.fluid_charge_density()});
   return std::make_shared<EmbryoInflow>(
       nozzle_of(n),
       EmbryoInflow::Rule{.link_length = n.link_length,
-                         .born = LinkContent::of_cylinder(n.radius, n.link_length,
-                                                          n.density, n.charge_density),
+                         .born = LinkContent::of_cylinder(
+                             n.radius, n.link_length, n.density, n.fluid_charge_density()),
                          .varicosity = varicosity_of(c),
                          .release = n.insertion_velocity == InsertionVelocity::half
                                         ? ReleaseVelocity::half
                                         : ReleaseVelocity::nozzle});
 }
 
-std::unique_ptr<Refinement> build_refinement(const SceneConfig& c,
-                                             const JetDynamics& dynamics) {
+std::unique_ptr<Event> build_refinement(const SceneConfig& c, const JetDynamics& dynamics) {
   Refinement::Totals totals;
   if (c.output.refinements != RefinementRecords::none)
     totals = [balance = std::make_shared<Balance>(
                   dynamics, std::span<const std::unique_ptr<Event>>{}),
               with_coulomb = c.output.refinements == RefinementRecords::energies](
                  const JetState& jet) { return balance->totals(jet, with_coulomb); };
-  return std::make_unique<Refinement>(refinement_rule(c), c.refinement->interval,
+  if (c.refinement->mesh == RefinedMesh::cut)
+    return std::make_unique<LinkCuts>(refinement_rule(c), c.refinement->interval,
+                                      std::move(totals));
+  return std::make_unique<Refinement>(refinement_rule(c), *c.refinement->interval,
                                       std::move(totals),
                                       c.integrator.events == EventPlacement::step_end);
 }
@@ -166,6 +181,23 @@ SolverOptions solver_options(const SceneConfig& scene,
 
 namespace {
 
+constexpr double default_nozzle_charge_length = 2e-4; // [m]
+
+void add_near_field(const SceneConfig& c, JetDynamics& dynamics) {
+  const NearFieldKind kind = c.coulomb->near_field == NearFieldForm::fixed
+                                 ? NearFieldKind::fixed
+                                 : NearFieldKind::free_surface;
+  std::optional<Embryo> embryo;
+  if (c.nozzle && c.nozzle->inflow == InflowKind::embryo)
+    embryo = Embryo{.link_length = c.nozzle->link_length};
+  dynamics.add(std::make_unique<NearField>(
+      NearField::Options{.kind = kind, .softened = softens_pairs(c), .embryo = embryo}));
+  if (!softens_pairs(c)) return;
+  SoftenedPairs::Options softening{.kind = kind, .embryo = embryo};
+  if (c.coulomb->softening_range) softening.range = *c.coulomb->softening_range;
+  dynamics.add(std::make_unique<SoftenedPairs>(softening));
+}
+
 std::unique_ptr<JetDynamics> compose_dynamics(const Scene& scene,
                                               std::shared_ptr<const Inflow> inflow) {
   const SceneConfig& c = scene.config;
@@ -175,11 +207,22 @@ std::unique_ptr<JetDynamics> compose_dynamics(const Scene& scene,
     dynamics->hold(
         {.first = c.chain->fixed == FixedEnds::first || c.chain->fixed == FixedEnds::both,
          .last = c.chain->fixed == FixedEnds::last || c.chain->fixed == FixedEnds::both});
+  if (c.collector && c.collector->charge == CollectorCharge::grounded)
+    dynamics->ground_collector();
   if (c.field) dynamics->add(std::make_unique<ExternalField>(field_strength(c)));
   if (c.gravity) dynamics->add(std::make_unique<Gravity>(c.gravity->acceleration));
   if (c.coulomb)
     dynamics->add(std::make_unique<CoulombForce>(
         make_coulomb_solver(solver_options(c, scene.costs))));
+  if (has_near_field(c)) add_near_field(c, *dynamics);
+  if (c.nozzle && c.nozzle->inflow == InflowKind::pump) {
+    dynamics->add(std::make_unique<FeedMomentum>());
+    if (c.coulomb)
+      dynamics->add(std::make_unique<NozzleThread>(
+          c.nozzle->fluid_charge_density() * c.nozzle->section(),
+          c.nozzle->nozzle_charge_length.value_or(default_nozzle_charge_length),
+          c.nozzle->radius));
+  }
   if (c.surface_tension && c.surface_tension->form == SurfaceTensionForm::paper)
     dynamics->add(std::make_unique<BendingSurfaceTension>(c.surface_tension->coefficient));
   if (c.surface_tension && c.surface_tension->form == SurfaceTensionForm::line)

@@ -170,6 +170,7 @@ void Simulation::run_until(double end_time) {
     time_ = next_time;
     jet_.time = t1;
     dynamics_->prescribe(jet_.time, jet_.y);
+    if (dynamics_->feeds()) feed(jet_, ledger_);
     if (found)
       for (std::size_t i = 0; i < events_.size(); ++i)
         if (i != found->index) events_[i]->overtaken(t1);
@@ -327,6 +328,18 @@ void Simulation::fail_at_link(double h, std::size_t bead) {
                   dynamics_->diagnosis(jet_.time, jet_.y, bead)));
 }
 
+/// Brings what bead 1 carries to the time of the jet.
+void Simulation::feed(JetState& jet, Ledger& ledger) const {
+  const LinkContent full{
+      .volume = jet.volume[1], .mass = jet.mass[1], .charge = jet.charge[1]};
+  const LinkContent now = dynamics_->constraints().inflow->acting(
+      full, jet.fed_since, jet.time, std::as_const(jet).columns().position());
+  jet.volume[1] = now.volume, jet.mass[1] = now.mass, jet.charge[1] = now.charge;
+  ledger.inserted_volume += now.volume - full.volume;
+  ledger.inserted_mass += now.mass - full.mass;
+  ledger.inserted_charge += now.charge - full.charge;
+}
+
 std::optional<Simulation::FoundEvent> Simulation::first_event(const DenseStep& step) {
   std::optional<FoundEvent> first;
   for (std::size_t i = 0; i < events_.size(); ++i) {
@@ -351,11 +364,14 @@ void Simulation::show_until(const DenseStep& step, double end) {
       snapshot_.resize(jet_.y.size());
       step.state(std::clamp((t - step.t0) / step.h, 0.0, 1.0), snapshot_);
       dynamics_->prescribe(t, snapshot_);
-      if (jet_.absorbing_plane) { // beads may have landed without an end of the step
+      // Beads may have landed without an end of the step, and link 1 may have grown.
+      if (jet_.absorbing_plane || dynamics_->feeds()) {
         JetState seen = jet_;
-        seen.y = snapshot_;
+        Ledger ledger = ledger_;
+        seen.y = snapshot_, seen.time = t;
+        if (dynamics_->feeds()) feed(seen, ledger);
         for (const auto& e : events_) e->anticipate(t, seen);
-        show(*o, {t, std::as_const(seen).columns(), seen, ledger_, statistics_});
+        show(*o, {t, std::as_const(seen).columns(), seen, ledger, statistics_});
       } else {
         show(*o, {t, {snapshot_, jet_.beads()}, jet_, ledger_, statistics_});
       }

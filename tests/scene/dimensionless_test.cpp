@@ -58,7 +58,7 @@ TEST(DimensionlessGroups, do_not_change_under_similarity) {
   const auto before = dimensionless_groups(c);
   for (double* length :
        {&c.nozzle->radius, &c.nozzle->link_length, &c.nozzle->amplitude,
-        &c.nozzle->velocity, &c.collector->distance, &c.gravity->acceleration})
+        &*c.nozzle->velocity, &c.collector->distance, &c.gravity->acceleration})
     *length *= s;
   c.viscoelasticity->elastic_modulus *= s * s;
   c.viscoelasticity->viscosity *= s * s;

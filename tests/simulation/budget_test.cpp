@@ -152,8 +152,8 @@ public:
   // Its account is that of the force as it should be.
   [[nodiscard]] TermAccount account() const override { return term_->account(); }
   [[nodiscard]] double energy(const Stage& stage) override { return term_->energy(stage); }
-  [[nodiscard]] double potential(const Stage& stage, std::size_t bead) override {
-    return term_->potential(stage, bead);
+  [[nodiscard]] double feeding_power(const Stage& stage, const LinkContent& rate) override {
+    return term_->feeding_power(stage, rate);
   }
   void add_power(const Stage& stage, Exchange& exchange) override {
     term_->add_power(stage, exchange);

@@ -177,7 +177,7 @@ TEST(Simulation, is_similar_to_itself_at_any_scale) {
   Scene small = scene;
   SceneConfig& c = small.config;
   c.nozzle->radius *= s, c.nozzle->link_length *= s, c.nozzle->amplitude *= s;
-  c.nozzle->velocity *= s;
+  *c.nozzle->velocity *= s;
   c.collector->distance *= s;
   *c.field->potential *= s * s;
   c.gravity->acceleration *= s;

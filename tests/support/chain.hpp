@@ -28,6 +28,7 @@ struct Chain {
   Stage& stage() {
     stage_.columns = columns();
     stage_.mass = mass, stage_.charge = charge, stage_.volume = volume;
+    stage_.link_charge = charge;
     stage_.first = first, stage_.landed = landed;
     stage_.invalidate();
     return stage_;

@@ -31,7 +31,7 @@ public:
   explicit IndependentBalance(const Scene& scene) {
     const SceneConfig& s = scene.config;
     if (s.nozzle)
-      source_ = {.nozzle = {.fluid_velocity = s.nozzle->velocity,
+      source_ = {.nozzle = {.fluid_velocity = s.nozzle->fluid_velocity(),
                             .amplitude = s.nozzle->amplitude,
                             .angular_frequency = s.nozzle->angular_frequency,
                             .phase = s.nozzle->phase},
@@ -75,6 +75,7 @@ public:
 
     stage_.time = jet.time, stage_.columns = jet.columns();
     stage_.mass = jet.mass, stage_.charge = charge_, stage_.volume = jet.volume;
+    stage_.link_charge = jet.charge;
     stage_.first = jet.first(), stage_.landed = jet.landed;
     stage_.invalidate();
   }

@@ -59,7 +59,8 @@ inline Scene case_one(const std::string& method = "dormand-prince",
                                  .charge_density = pvp::charge_density,
                                  .amplitude = 1e-3 * cm,
                                  .angular_frequency = 1e4};
-  s.config.collector = CollectorConfig{pvp::distance};
+  s.config.collector =
+      CollectorConfig{.distance = pvp::distance, .charge = CollectorCharge::kept};
   s.config.field = FieldConfig{.potential = pvp::potential, .strength = {}};
   s.config.gravity = GravityConfig{pvp::gravity};
   s.config.coulomb = CoulombConfig{};

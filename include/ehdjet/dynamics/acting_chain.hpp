@@ -21,7 +21,9 @@ struct HeldEnds {
 /// What keeps the beads of a scene from moving freely, besides the collector.
 struct Constraints {
   const Inflow* inflow = nullptr; ///< null: bead 0 is an ordinary bead
-  HeldEnds ends;
+  HeldEnds ends = {};
+  /// Landed beads rest in the place of their image charges and act on no other bead (model 5).
+  bool grounded_collector = false;
 };
 
 /// A chain as force terms see it: which beads move freely, what they carry as they act, and a
@@ -43,6 +45,7 @@ public:
 
   [[nodiscard]] std::size_t beads() const { return mass_.size(); }
   [[nodiscard]] bool has_led_bead() const { return has_led_bead_; }
+  [[nodiscard]] bool changes_content() const { return changes_content_; }
   [[nodiscard]] std::span<const double> mass() const { return mass_; }
   [[nodiscard]] std::span<const double> inverse_mass() const { return inverse_mass_; }
   /// Beads that do not move freely, and those of them whose link keeps its columns.
@@ -61,12 +64,16 @@ private:
   Constraints constraints_;
   Stage stage_;
   std::vector<double> mass_, charge_, volume_, inverse_mass_; // as they act
-  std::vector<std::vector<double>> declared_;                 // further carried columns
+  std::vector<double>
+      link_charge_; // only beside a grounded collector: elsewhere it is charge_
+  std::vector<std::vector<double>> declared_; // further carried columns
   std::vector<std::uint8_t> moves_;
   std::vector<LandedBead> landed_;
   std::vector<std::size_t> held_, frozen_;
   bool has_led_bead_ = false;
-  LinkContent full_; // of bead 1, while an inflow changes how it acts
+  LinkContent full_;     // of bead 1, while an inflow changes how it acts
+  double fed_since_ = 0; // [s]
+  std::optional<Feed> feed_;
   bool changes_content_ = false;
   std::optional<double> absorbing_plane_; // [m]
   std::vector<std::size_t> absorbed_;

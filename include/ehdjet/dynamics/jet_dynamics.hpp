@@ -34,6 +34,8 @@ public:
   /// Bead 0 is the nozzle and beads are born there. Without it bead 0 is an ordinary bead.
   void set_inflow(std::shared_ptr<const Inflow> inflow);
   void hold(HeldEnds ends);
+  /// Beads that have landed act on no other bead.
+  void ground_collector();
 
   /// Must be called after the chain (not merely its state) has changed.
   void bind(const JetState& jet);
@@ -48,6 +50,8 @@ public:
   [[nodiscard]] StiffPart* stiff_part() override { return this; }
   /// Puts the nozzle and an embryo in their places at time t.
   void prescribe(double t, std::span<double> y) const override;
+  /// Whether fluid flows into link 1 all the time (model 4.3).
+  [[nodiscard]] bool feeds() const { return feeds_; }
 
   [[nodiscard]] std::uint64_t evaluations() const { return evaluations_; }
   [[nodiscard]] const std::vector<std::unique_ptr<ForceTerm>>& terms() const {
@@ -82,6 +86,7 @@ private:
   std::vector<ForceTerm*> with_columns_;   // terms that add integrated columns
   std::vector<std::size_t> resting_;       // entries of the state whose rate is zero
   std::shared_ptr<const Inflow> inflow_;
+  bool feeds_ = false;
   ActingChain chain_;
   std::uint64_t evaluations_ = 0;
   ChainJacobian jacobian_;   // of the last linearization; empty as long as there was none

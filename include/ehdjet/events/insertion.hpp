@@ -44,10 +44,10 @@ public:
   [[nodiscard]] bool changes_content(bool has_led_bead) const override {
     return has_led_bead;
   }
-  [[nodiscard]] LinkContent acting(const LinkContent& full, double t,
+  [[nodiscard]] LinkContent acting(const LinkContent& full, double since, double t,
                                    ConstVec3View r) const override;
-  [[nodiscard]] double charging(const LinkContent& full,
-                                JetColumns<const double> y) const override;
+  [[nodiscard]] LinkContent content_rate(const LinkContent& full,
+                                         JetColumns<const double> y) const override;
   [[nodiscard]] Vec3 led_velocity(JetColumns<const double> y) const override;
   /// Release, then insertion: the order in which they are applied at one instant.
   [[nodiscard]] std::vector<std::unique_ptr<Event>> events() const override;

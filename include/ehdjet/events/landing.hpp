@@ -13,6 +13,10 @@ namespace ehdjet {
 /// chain as soon as its upstream neighbour has landed too; until then its link still pulls with
 /// its last stress. An interior bead that lands first freezes and waits (model 5).
 ///
+/// The link to a resting bead may become so short that it is no thread any more, on a straight jet,
+/// whose beads all land in one place: once it is shorter than its radius, l^3 <= V/pi, its upper
+/// bead has landed, too.
+///
 /// A landing ends the step, unless beads land every few steps. Then they pass the collector during
 /// a step, in which they count as resting where they crossed (JetState::absorbing_plane); time and
 /// state of each bead at its landing are read off the dense output, and the chain changes at the
@@ -40,6 +44,9 @@ public:
   }
 
 private:
+  /// How close a bead has to come to a resting bead below it to land there; 0: none rests [m].
+  [[nodiscard]] static double touching_distance(const JetState& jet, std::size_t bead);
+
   /// A bead at the collector.
   struct Arrival {
     std::size_t bead = 0;
@@ -48,6 +55,8 @@ private:
     std::optional<double> link_length; ///< absent: that of the jet as it is [m]
   };
 
+  [[nodiscard]] std::optional<double> first_touch(const DenseStep& step) const;
+  [[nodiscard]] bool has_arrived(const JetState& jet, std::size_t bead) const;
   [[nodiscard]] Arrival arrival_inside(const DenseStep& step, std::size_t bead,
                                        double theta) const;
   [[nodiscard]] Arrival arrival_now(const JetState& jet, std::size_t bead) const;

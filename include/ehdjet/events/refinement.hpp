@@ -44,4 +44,30 @@ private:
   bool at_step_ends_;
 };
 
+/// Cuts each link that has become longer than L~, at the end of the step in which it has, and joins
+/// links that are needlessly short if the rule says so (model 7). The integrator goes on with its
+/// step size.
+class LinkCuts final : public Event {
+public:
+  /// `interval`: only at the first step end at or behind each multiple of it [s]. Without `totals`
+  /// nothing is recorded.
+  LinkCuts(const RefinementRule& rule, std::optional<double> interval,
+           Refinement::Totals totals = {});
+  [[nodiscard]] std::string_view name() const override { return "refinement"; }
+  [[nodiscard]] bool due(const JetState& jet) const override;
+  [[nodiscard]] std::optional<double> locate(const DenseStep&) override { return {}; }
+  [[nodiscard]] std::optional<double> predict(const DenseStep&) const override {
+    return {};
+  }
+  void apply(EventContext& context) override;
+  void archive(const Archive& a) override {
+    if (schedule_) schedule_->archive(a.part("schedule"));
+  }
+
+private:
+  RefinementRule rule_;
+  std::optional<Schedule> schedule_;
+  Refinement::Totals totals_;
+};
+
 } // namespace ehdjet

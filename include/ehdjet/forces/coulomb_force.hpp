@@ -19,7 +19,7 @@ public:
   [[nodiscard]] TermAccount account() const override;
   [[nodiscard]] double energy(const Stage& stage) override; ///< of all pairs
   [[nodiscard]] double energy_change(const Stage& before, const Stage& after) override;
-  [[nodiscard]] double potential(const Stage& stage, std::size_t bead) override;
+  [[nodiscard]] double feeding_power(const Stage& stage, const LinkContent& rate) override;
   void add_force_on(std::span<const std::size_t> beads, const Stage& stage,
                     Vec3View force) override;
   [[nodiscard]] std::optional<TermReport> report() const override;

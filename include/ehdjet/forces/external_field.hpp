@@ -15,7 +15,7 @@ public:
   [[nodiscard]] std::string_view name() const override { return "external field"; }
   [[nodiscard]] TermAccount account() const override;
   [[nodiscard]] double energy(const Stage& stage) override; ///< - sum q E x
-  [[nodiscard]] double potential(const Stage& stage, std::size_t bead) override;
+  [[nodiscard]] double feeding_power(const Stage& stage, const LinkContent& rate) override;
 
 private:
   double strength_;

@@ -76,8 +76,9 @@ public:
   [[nodiscard]] virtual double energy_change(const Stage& before, const Stage& after) {
     return energy(after) - energy(before);
   }
-  /// dU/dq: what it costs to bring charge to a bead [V].
-  [[nodiscard]] virtual double potential(const Stage& /*stage*/, std::size_t /*bead*/) {
+  /// dU/dt at rest, while what bead 1 carries grows at that rate [W].
+  [[nodiscard]] virtual double feeding_power(const Stage& /*stage*/,
+                                             const LinkContent& /*rate*/) {
     return 0;
   }
   /// force (beads) += ... on those beads, which do not move freely. Entries of others may get
@@ -89,6 +90,9 @@ public:
   /// What the term brings in per second besides the work of its force on beads that move: what it
   /// dissipates, what it costs to feed it.
   virtual void add_power(const Stage& /*stage*/, Exchange& /*exchange*/) {}
+
+  /// tension (beads) += T_k, what a term that acts along links pulls its two ends together with [N].
+  virtual void add_tension(const Stage& /*stage*/, std::span<double> /*tension*/) {}
 
   /// None if there is nothing to tell.
   [[nodiscard]] virtual std::optional<TermReport> report() const { return {}; }

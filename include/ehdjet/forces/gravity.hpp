@@ -15,6 +15,7 @@ public:
   [[nodiscard]] std::string_view name() const override { return "gravity"; }
   [[nodiscard]] TermAccount account() const override;
   [[nodiscard]] double energy(const Stage& stage) override; ///< - sum m g x
+  [[nodiscard]] double feeding_power(const Stage& stage, const LinkContent& rate) override;
 
 private:
   double acceleration_;

@@ -13,7 +13,8 @@ namespace ehdjet {
 ///
 /// units  : G [Pa], mu [Pa s], sigma [Pa]
 /// laws   : internal forces sum to zero; the rate vanishes under rigid motion
-/// A landed bead keeps its stress, and counts as at rest for the link below it (model 5).
+/// A landed bead keeps its stress, and counts as at rest for the link below it (model 5). The stress
+/// of a link that is fed follows model 4.3.
 /// source : Reneker, Yarin, Fong & Koombhongse, J. Appl. Phys. 87 (2000) 4531
 class Maxwell final : public ForceTerm {
 public:
@@ -28,8 +29,12 @@ public:
   [[nodiscard]] TermAccount account() const override;
   [[nodiscard]] double energy(const Stage& stage) override; ///< sum V sigma^2/(2 G)
   void add_power(const Stage& stage, Exchange& exchange) override;
+  [[nodiscard]] double feeding_power(const Stage& stage, const LinkContent& rate) override;
+  void add_tension(const Stage& stage, std::span<double> tension) override;
 
 private:
+  [[nodiscard]] double entry_stress(const Stage& stage) const;
+  [[nodiscard]] double fed_rate(const Stage& stage) const;
   double elastic_modulus_, relaxation_rate_;
   std::size_t stress_ = 0;                 // its column
   std::vector<double> tension_per_length_; // V sigma / l^2 [N/m]

@@ -39,6 +39,8 @@ public:
   [[nodiscard]] std::string_view name() const override { return "surface tension (line)"; }
   [[nodiscard]] TermAccount account() const override;
   [[nodiscard]] double energy(const Stage& stage) override; ///< sum 2 alpha sqrt(pi V l)
+  [[nodiscard]] double feeding_power(const Stage& stage, const LinkContent& rate) override;
+  void add_tension(const Stage& stage, std::span<double> tension) override;
 
 private:
   double coefficient_;

@@ -10,9 +10,10 @@ namespace ehdjet {
 // Observers that write a part of a run file each and share its ownership. The part is in the file
 // at once, without rows. `interval` is the time between rows [s].
 
-/// A row per time about the jet as a whole.
+/// A row per time about the jet as a whole, and what `further` has about it.
 std::unique_ptr<Observer> record_observables(std::shared_ptr<RunFile> file, double interval,
-                                             bool with_coulomb_error = false);
+                                             bool with_coulomb_error = false,
+                                             std::shared_ptr<Accounts> further = {});
 /// All beads of jets with that table.
 std::unique_ptr<Observer> record_frames(std::shared_ptr<RunFile> file, double interval,
                                         const BeadTable& table);

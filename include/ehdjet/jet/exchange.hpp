@@ -56,6 +56,12 @@ struct Exchange {
   [[nodiscard]] Flow& by_support_of(std::size_t bead) {
     return supported[static_cast<std::size_t>(support(bead))];
   }
+  /// Of what feeds bead 1.
+  [[nodiscard]] Flow& by_inflow() {
+    const Support s =
+        support(1) == Support::insertion ? Support::insertion : Support::inflow;
+    return supported[static_cast<std::size_t>(s)];
+  }
   /// dr/dt of a bead that does not move freely [m/s].
   [[nodiscard]] Vec3 led(std::size_t bead) const {
     const Support s = support(bead);

@@ -6,6 +6,7 @@
 #include "ehdjet/jet/nozzle.hpp"
 
 #include <cstddef>
+#include <optional>
 
 namespace ehdjet {
 
@@ -18,6 +19,14 @@ struct LinkContent {
   /// V = pi a^2 l,  m = rho V,  q = rho_q V
   static LinkContent of_cylinder(double radius, double length, double density,
                                  double charge_density);
+};
+
+/// A steady flow into link 1 while bead 1 moves freely (model 4.3).
+struct Feed {
+  double flow_rate = 0; ///< Q [m^3/s]
+  double density = 0;   ///< rho [kg/m^3]
+  double section = 0;   ///< A0 = pi a0^2 of the nozzle [m^2]
+  double stress = 0;    ///< sigma_in, with which the fluid leaves the nozzle [Pa]
 };
 
 /// How fluid enters a jet at its nozzle, bead 0: where bead 0 is, whether bead 1 is led and what it
@@ -40,14 +49,16 @@ public:
 
   /// Whether what bead 1 carries as it acts differs from what it carries.
   [[nodiscard]] virtual bool changes_content(bool has_led_bead) const = 0;
-  /// What bead 1 carries as it acts, while it changes.
-  [[nodiscard]] virtual LinkContent acting(const LinkContent& full, double t,
+  /// What bead 1 carries as it acts at time t, while it changes. `since`: JetState::fed_since.
+  [[nodiscard]] virtual LinkContent acting(const LinkContent& full, double since, double t,
                                            ConstVec3View r) const = 0;
-  /// How fast the charge of a led bead 1 grows [A].
-  [[nodiscard]] virtual double charging(const LinkContent& full,
-                                        JetColumns<const double> y) const = 0;
+  /// How fast that grows, per second.
+  [[nodiscard]] virtual LinkContent content_rate(const LinkContent& full,
+                                                 JetColumns<const double> y) const = 0;
   /// dr/dt of a led bead 1 [m/s].
   [[nodiscard]] virtual Vec3 led_velocity(JetColumns<const double> y) const = 0;
+  /// What flows into link 1 all the time; none: link 1 is not fed while bead 1 moves freely.
+  [[nodiscard]] virtual std::optional<Feed> feed() const { return {}; }
 
 private:
   Nozzle nozzle_;

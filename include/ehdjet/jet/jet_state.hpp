@@ -37,6 +37,7 @@ struct JetState {
   std::vector<double> volume;                ///< [m^3]
   std::vector<std::vector<double>> declared; ///< further carried columns
   bool has_embryo = false;
+  double fed_since = 0;           ///< when link 1 was cut last, if the inflow feeds it [s]
   std::vector<LandedBead> landed; ///< still in the chain, ascending bead index
   /// While beads land every few steps: the plane beyond which, during a step, a bead counts as
   /// resting where it crossed (model 5). None: each landing ends a step [m].
@@ -73,6 +74,10 @@ void archive(const Archive& a, JetState& jet);
 
 /// A jet of that many beads whose columns are all zero.
 [[nodiscard]] JetState blank_jet(std::shared_ptr<const BeadTable> table, std::size_t beads);
+
+/// The same with the time and the state at the nozzle and the collector of another jet, but for its landed
+/// beads: a start for that jet on another mesh.
+[[nodiscard]] JetState blank_like(const JetState& jet, std::size_t beads);
 
 /// Inserts a bead so that it gets index `at`; later beads (and their landing records) move up.
 void insert_bead(JetState& jet, std::size_t at, const Bead& bead);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "ehdjet/jet/inflow.hpp"
 #include "ehdjet/jet/jet_columns.hpp"
 #include "ehdjet/jet/jet_state.hpp"
 #include "ehdjet/jet/links.hpp"
@@ -19,10 +20,13 @@ public:
   double time = 0;                  ///< [s]
   JetColumns<const double> columns; ///< integrated columns at this stage
   std::span<const double> mass; ///< [kg], like charge and volume as they act at this stage
-  std::span<const double> charge;                ///< [C]
+  std::span<const double> charge; ///< as it acts on other beads [C]
+  /// Of the links: the charge of a landed bead's link remains, on a grounded collector too [C].
+  std::span<const double> link_charge;
   std::span<const double> volume;                ///< [m^3]
   std::span<const std::vector<double>> declared; ///< further carried columns
-  std::size_t first = 1; ///< first bead below bead 0 with local forces
+  std::size_t first = 1;      ///< first bead below bead 0 with local forces
+  const Feed* feed = nullptr; ///< what flows into link 1; null: nothing does
   std::span<const LandedBead> landed;
   std::span<const std::uint8_t> moves; ///< 1: the bead moves freely
   /// Beads whose forces are asked for, and those whose charges act on them: all, unless only a part

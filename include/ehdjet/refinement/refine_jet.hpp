@@ -45,6 +45,20 @@ struct MeshChange {
 /// longer, it may add a few beads once more.
 std::optional<MeshChange> refine_jet(JetState& jet, const RefinementRule& rule);
 
+/// Whether a link that may be cut is longer than L~.
+[[nodiscard]] bool has_long_link(const JetState& jet, const RefinementRule& rule);
+
+/// Cuts each link that is longer than L~ into ceil(l/L~) parts and leaves all other beads as they are,
+/// bit for bit (model 7). New beads lie on Akima's curve through the neighbours, with a velocity from
+/// the same spline. Amounts are shared out equally; what else a link has, its parts have too. A new
+/// bead beyond the collector is put on it. The link that is being fed is left alone. Nothing if no
+/// link is too long.
+/// errors : RunError for more than ten million links
+std::optional<MeshChange> cut_links(JetState& jet, const RefinementRule& rule);
+
+/// Whether there are links to join.
+[[nodiscard]] bool has_short_links(const JetState& jet, const RefinementRule& rule);
+
 /// Joins neighbouring links that are together no longer than `rule.coarsen` (model 7): amounts and
 /// the sums of weight times column (momentum, V sigma) are kept. The insertion zone and a landed
 /// bead are left alone. Nothing if there are no such links.

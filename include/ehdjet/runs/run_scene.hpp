@@ -1,5 +1,6 @@
 #pragma once
 
+#include "ehdjet/budget/effective_tension.hpp"
 #include "ehdjet/scene/read_scene.hpp"
 #include "ehdjet/simulation/build.hpp"
 
@@ -39,6 +40,8 @@ struct RunResult {
   RunStatistics statistics;
   Ledger ledger;
   std::string coulomb_method; ///< what the solver has done; empty for the direct sum
+  std::optional<EffectiveTension::Summary> tension =
+      {}; ///< at the end; only with a near field
 };
 
 /// Version, commit, compiler, instruction set and threads of this library, by name: what every run

@@ -28,6 +28,14 @@ enum class SurfaceTensionForm { paper, line };
 enum class EventPlacement { located, step_end };
 /// Whether steps go on through landings while those are frequent (model 5).
 enum class LandingSteps { automatic, located };
+/// How fluid enters a jet at its nozzle (model 4).
+enum class InflowKind { embryo, pump };
+/// What the charge of a bead does once it rests on the collector (model 5).
+enum class CollectorCharge { grounded, kept };
+/// What is added to the forces between the beads so that they act like a thread (model 3.1).
+enum class NearFieldForm { point, free_surface, fixed };
+/// How links that have become too long are refined (model 7).
+enum class RefinedMesh { redistribute, cut };
 /// What is recorded of each refinement.
 enum class RefinementRecords { none, sums, energies };
 /// Norm over the components of the scaled error estimate.
@@ -35,16 +43,26 @@ enum class ErrorNorm { max, rms };
 
 /// The jet is born at a nozzle (model 2 and 4). Excludes `ChainConfig`.
 struct NozzleConfig {
-  double radius = 0;            ///< a0 [m]
-  double link_length = 0;       ///< l_step [m]
-  double velocity = 0;          ///< v_s [m/s]
-  double density = 0;           ///< rho [kg/m^3]
-  double charge_density = 0;    ///< rho_q [C/m^3]
-  double amplitude = 0;         ///< A [m]
-  double angular_frequency = 0; ///< omega [rad/s]
-  double phase = 0;             ///< [rad]
+  double radius = 0;                         ///< a0 [m]
+  double link_length = 0;                    ///< l_step [m]
+  std::optional<double> velocity = {};       ///< v_s [m/s]
+  double density = 0;                        ///< rho [kg/m^3]
+  std::optional<double> charge_density = {}; ///< rho_q [C/m^3]
+  double amplitude = 0;                      ///< A [m]
+  double angular_frequency = 0;              ///< omega [rad/s]
+  double phase = 0;                          ///< [rad]
   InsertionVelocity insertion_velocity = InsertionVelocity::half;
+  InflowKind inflow = InflowKind::embryo;
+  // Of a pump (model 4.3).
+  std::optional<double> flow_rate = {};            ///< Q [m^3/s]
+  std::optional<double> current = {};              ///< I = rho_q Q [A]
+  std::optional<double> nozzle_stress = {};        ///< sigma_in [Pa]
+  std::optional<double> nozzle_charge_length = {}; ///< L_n [m]
   bool operator==(const NozzleConfig&) const = default;
+
+  [[nodiscard]] double section() const;              ///< A0 = pi a0^2 [m^2]
+  [[nodiscard]] double fluid_velocity() const;       ///< v_s, or Q/A0 of a pump [m/s]
+  [[nodiscard]] double fluid_charge_density() const; ///< rho_q, or I/Q [C/m^3]
 };
 
 /// The jet is a given chain of beads; nothing is inserted. Excludes `NozzleConfig`.
@@ -72,6 +90,9 @@ struct CoulombConfig {
   std::string solver = "direct";
   double tolerance = 1e-6; ///< of the net force, what all but the direct sum keep [-]
   std::optional<ToleranceNorm> norm = {}; ///< moving with a nozzle, global for chains
+  NearFieldForm near_field = NearFieldForm::point;
+  std::optional<bool> softened_pairs = {};    ///< default: see `softens_pairs`
+  std::optional<double> softening_range = {}; ///< C [-]
   // For studies; otherwise they follow from the tolerance.
   std::optional<std::size_t> order = {};
   std::optional<double> opening = {};
@@ -97,6 +118,7 @@ struct SurfaceTensionConfig {
 /// Conducting plane x = distance where beads land (model 5).
 struct CollectorConfig {
   double distance = 0; ///< h [m]
+  CollectorCharge charge = CollectorCharge::grounded;
   bool operator==(const CollectorConfig&) const = default;
 };
 
@@ -110,8 +132,9 @@ struct VaricosityConfig {
 
 /// Dynamic mesh refinement (model 7).
 struct RefinementConfig {
-  double length = 0;   ///< L~ [m]
-  double interval = 0; ///< t_ref [s]
+  double length = 0;                   ///< L~ [m]
+  std::optional<double> interval = {}; ///< t_ref [s]
+  RefinedMesh mesh = RefinedMesh::redistribute;
   LinkRemap remap = LinkRemap::conservative;
   ColumnRemap velocity = ColumnRemap::spline;
   ColumnRemap stress = ColumnRemap::spline;
@@ -173,6 +196,10 @@ struct SceneConfig {
   OutputConfig output;
   bool operator==(const SceneConfig&) const = default;
 };
+
+[[nodiscard]] bool has_near_field(const SceneConfig& config);
+/// Whether pairs of close charges are softened (model 3.1).
+[[nodiscard]] bool softens_pairs(const SceneConfig& config);
 
 /// The beads of a chain scene, from bead 0 on. All columns have the same length; those of links
 /// belong to the link that ends at the bead (entry 0 belongs to no link).

@@ -67,6 +67,16 @@ inline constexpr Choices<InsertionVelocity, 2> insertion_velocities{
     {{"half", InsertionVelocity::half}, {"nozzle", InsertionVelocity::nozzle}}};
 inline constexpr Choices<SurfaceTensionForm, 2> surface_tension_forms{
     {{"paper", SurfaceTensionForm::paper}, {"line", SurfaceTensionForm::line}}};
+inline constexpr Choices<InflowKind, 2> inflow_kinds{
+    {{"embryo", InflowKind::embryo}, {"pump", InflowKind::pump}}};
+inline constexpr Choices<CollectorCharge, 2> collector_charges{
+    {{"grounded", CollectorCharge::grounded}, {"kept", CollectorCharge::kept}}};
+inline constexpr Choices<NearFieldForm, 3> near_field_forms{
+    {{"point", NearFieldForm::point},
+     {"free-surface", NearFieldForm::free_surface},
+     {"fixed", NearFieldForm::fixed}}};
+inline constexpr Choices<RefinedMesh, 2> refined_meshes{
+    {{"redistribute", RefinedMesh::redistribute}, {"cut", RefinedMesh::cut}}};
 inline constexpr Choices<EventPlacement, 2> event_placements{
     {{"located", EventPlacement::located}, {"step-end", EventPlacement::step_end}}};
 inline constexpr Choices<ToleranceNorm, 3> tolerance_norms{
@@ -125,13 +135,17 @@ void describe(V& v, RunConfig& c) {
 template <class V>
 void describe(V& v, NozzleConfig& c) {
   v.required("radius", c.radius, positive("m", 2e-3), "jet radius at the nozzle, a0");
-  v.required("link_length", c.link_length, positive("m", 1e-2),
-             "length of a link when it leaves the nozzle, l_step; at least the radius");
-  v.required("velocity", c.velocity, non_negative("m/s", 1e3),
-             "fluid velocity at the nozzle, v_s");
+  v.required(
+      "link_length", c.link_length, positive("m", 1e-2),
+      "length of a link when it leaves the nozzle, l_step; at least the radius, unless "
+      "pairs are softened");
+  v.optional("velocity", c.velocity, non_negative("m/s", 1e3),
+             "fluid velocity at the nozzle, v_s",
+             "required; with a pump flow_rate is given");
   v.required("density", c.density, between("kg/m^3", 1, 1e5), "density of the fluid, rho");
-  v.required("charge_density", c.charge_density, between("C/m^3", -1e4, 1e4),
-             "charge per volume of the fluid, rho_q");
+  v.optional("charge_density", c.charge_density, between("C/m^3", -1e4, 1e4),
+             "charge per volume of the fluid, rho_q",
+             "required; with a pump `current` may be given instead");
   v.optional("amplitude", c.amplitude, non_negative("m", 1e-2),
              "radius of the circle on which the nozzle moves, A");
   v.optional("angular_frequency", c.angular_frequency, between("rad/s", -1e9, 1e9),
@@ -142,6 +156,20 @@ void describe(V& v, NozzleConfig& c) {
       "insertion_velocity", c.insertion_velocity, insertion_velocities,
       "velocity of a released bead: half-way to that of the bead downstream, or that of "
       "the nozzle");
+  v.optional("inflow", c.inflow, inflow_kinds,
+             "how fluid enters: beads are born as fast as the forces pull them out (the "
+             "paper), or a pump feeds the first link at a given rate");
+  v.optional("flow_rate", c.flow_rate, positive("m^3/s", 1e-3),
+             "volume that the pump feeds per second, Q; 1 mL/h = 2.7778e-10 m^3/s",
+             "required with a pump");
+  v.optional("current", c.current, between("A", -1, 1),
+             "charge that the pump feeds per second, I = charge_density Q",
+             "charge_density is given");
+  v.optional("nozzle_stress", c.nozzle_stress, between("Pa", -1e9, 1e9),
+             "stress with which the fluid leaves a pump's nozzle", "0 with a pump");
+  v.optional("nozzle_charge_length", c.nozzle_charge_length, positive("m", 1),
+             "length of the charged fluid in a pump's nozzle that acts on the jet",
+             "0.0002 with a pump");
 }
 
 template <class V>
@@ -157,6 +185,9 @@ template <class V>
 void describe(V& v, CollectorConfig& c) {
   v.required("distance", c.distance, positive("m", 10),
              "distance from the nozzle, h; more than two link lengths");
+  v.optional("charge", c.charge, collector_charges,
+             "the charge of a bead that rests on the grounded collector acts on no other "
+             "bead, or it is kept until the bead leaves (the paper)");
 }
 
 template <class V>
@@ -186,6 +217,19 @@ void describe(V& v, CoulombConfig& c) {
       "force without the strongest tenth, for all beads |F|, or for each bead the sum of "
       "the magnitudes that act on it",
       "moving with a nozzle, global for a chain");
+  v.optional(
+      "near_field", c.near_field, near_field_forms,
+      "charges act as points at the beads (the paper), or what they leave out of the "
+      "field of a thread is added along each link: for a liquid thread, or for one "
+      "whose radius is fixed");
+  v.optional(
+      "softened_pairs", c.softened_pairs, YesNo{},
+      "charges closer than their radii push less than points; for links that are not "
+      "long against their radius",
+      "with a near field, if the first links are shorter than 4 nozzle.radius");
+  v.optional("softening_range", c.softening_range, between("-", 5, 1000),
+             "distance up to which pairs are softened, in radii",
+             "40 if pairs are softened");
   v.optional("order", c.order, between("-", 2, 22), "order of the expansions, for studies",
              "follows from the tolerance");
   v.optional("opening", c.opening, positive("-", 0.99),
@@ -235,8 +279,13 @@ void describe(V& v, VaricosityConfig& c) {
 template <class V>
 void describe(V& v, RefinementConfig& c) {
   v.required("length", c.length, positive("m", 1), "links longer than this are cut, L~");
-  v.required("interval", c.interval, positive("s", longest_time),
-             "time between refinements, which happen at its multiples, t_ref");
+  v.optional("interval", c.interval, positive("s", longest_time),
+             "time between refinements, which happen at its multiples, t_ref; required to "
+             "redistribute links",
+             "links are cut at the end of the step in which they become too long");
+  v.optional("mesh", c.mesh, refined_meshes,
+             "links from the first long one on are redistributed (the paper), or each long "
+             "link is cut and all others stay as they are");
   v.optional(
       "remap", c.remap, refinement_remaps,
       "how volume, mass and charge reach the new links: by overlap along the arc length, "

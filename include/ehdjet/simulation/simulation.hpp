@@ -86,6 +86,7 @@ private:
   [[nodiscard]] double expected_time(const DenseStep& step) const;
   void show_until(const DenseStep& step, double end);
   void stop_at(const DenseStep& step, double theta);
+  void feed(JetState& jet, Ledger& ledger) const;
   void apply_events(std::size_t located);
   void apply(Event& event, EventContext& context);
   void archive(const Archive& a);
