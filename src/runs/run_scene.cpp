@@ -3,7 +3,7 @@
 #include "ehdjet/budget/budget.hpp"
 #include "ehdjet/core/error.hpp"
 #include "ehdjet/core/version.hpp"
-#include "ehdjet/coulomb/direct_sum.hpp"
+#include "ehdjet/coulomb/simd_level.hpp"
 #include "ehdjet/io/records.hpp"
 #include "ehdjet/run_files/run_reader.hpp"
 
