@@ -1,7 +1,7 @@
 #include "plot.hpp"
 
 #include "ehdjet/core/error.hpp"
-#include "ehdjet/io/plot_page.hpp"
+#include "ehdjet/io/export.hpp"
 #include "ehdjet/io/text_output.hpp"
 #include "ehdjet/run_files/run_reader.hpp"
 
