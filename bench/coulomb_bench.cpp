@@ -2,8 +2,8 @@
 // are a plain scalar loop, whose time depends on nothing but the processor.
 
 #include "ehdjet/core/constants.hpp"
-#include "ehdjet/coulomb/direct_sum.hpp"
 #include "ehdjet/coulomb/error_estimate.hpp"
+#include "ehdjet/coulomb/make_solver.hpp"
 
 #include <benchmark/benchmark.h>
 #include <omp.h>

@@ -47,7 +47,7 @@ BENCHMARK_CAPTURE(evaluate, everything_else, false);
 
 void coulomb_force(benchmark::State& state) {
   omp_set_num_threads(1);
-  const auto solver = make_coulomb_solver("direct");
+  const auto solver = make_coulomb_solver({.solver = "direct"});
   const JetState& jet = whipping_jet();
   std::vector<double> f(3 * jet.beads());
   const std::span<double> all(f);

@@ -53,7 +53,7 @@ private:
 void pair_force(Comparison& c) {
   const std::array x{0.0, 2e-4}, zero{0.0, 0.0}, q{1e-9, 2e-9};
   std::array<double, 2> fx{}, fy{}, fz{};
-  make_coulomb_solver("direct")->add_force({{x, zero, zero}, q}, {fx, fy, fz});
+  make_coulomb_solver({.solver = "direct"})->add_force({{x, zero, zero}, q}, {fx, fy, fz});
   c.add("force between 1 nC and 2 nC 0.2 mm apart [N]", fx[1], 0.449377589368409, 1e-14,
         "Coulomb's law");
 }

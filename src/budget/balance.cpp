@@ -123,7 +123,8 @@ std::span<const Flow> Balance::flows(const JetState& jet) {
     exchange.led_velocity[0] = stage.columns.velocity()[0];
     exchange.led_velocity[0].x() = 0; // the fluid flows through the nozzle, which stays
   }
-  if (chain_.has_led_bead()) exchange.led_velocity[1] = inflow->led_velocity(stage.columns);
+  if (inflow != nullptr && chain_.has_led_bead())
+    exchange.led_velocity[1] = inflow->led_velocity(stage.columns);
   std::ranges::fill(flows_, Flow{});
   const auto& terms = dynamics_.terms();
   for (std::size_t i = 0; i < terms.size(); ++i) {

@@ -1,31 +1,24 @@
-#include "bench.hpp"
-
 #include "ehdjet/core/error.hpp"
 #include "ehdjet/io/text_output.hpp"
-#include "ehdjet/scene/read_scene.hpp"
 #include "ehdjet/studies/table2.hpp"
 
 #include <omp.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fmt/format.h>
+#include <iterator>
 #include <memory>
-#include <optional>
-#include <string>
-#include <vector>
 
+#include "commands.hpp"
 #include "interrupt.hpp"
+#include "options.hpp"
 #include "progress.hpp"
-#include "threads.hpp"
 #include "version.hpp"
 
 namespace ehdjet::cli {
 namespace {
-
-namespace fs = std::filesystem;
 
 struct BenchOptions {
   std::vector<std::string> rows, overrides;
@@ -44,20 +37,6 @@ std::vector<std::string> overrides_of(const BenchOptions& options) {
   if (options.method)
     all.push_back(fmt::format("integrator.method=\"{}\"", *options.method));
   return all;
-}
-
-Table2Run measure(const Scene& scene, double stationary_from, std::size_t threads,
-                  bool quiet) {
-  const double end = scene.config.run.end_time;
-  std::optional<Progress> progress;
-  if (!quiet) progress.emplace(0.0, end);
-  const InterruptGuard interrupt;
-  const auto after_step = [&](const Simulation& s) {
-    if (progress) progress->show(s);
-    if (const char* signal = InterruptGuard::signal_name())
-      throw RunError(fmt::format("stopped by {}", signal));
-  };
-  return run_table2(scene, end, stationary_from, threads, {}, after_step);
 }
 
 struct Row {
@@ -135,17 +114,16 @@ std::string provenance() {
 
 void bench_table2(const BenchOptions& options) {
   std::vector<const Table2Row*> chosen;
-  chosen.reserve(table2.size());
-  for (const Table2Row& row : table2)
-    if (options.rows.empty()
-        || std::ranges::find(options.rows, row.name) != options.rows.end())
-      chosen.push_back(&row);
-  std::vector<Scene> scenes; // all are read before anything runs
-  scenes.reserve(chosen.size());
-  for (const Table2Row* row : chosen)
-    scenes.push_back(
-        read_scene(fs::path(options.scenes) / fmt::format("{}.toml", row->scene),
-                   overrides_of(options)));
+  std::vector<Scene> scenes; // all of them are read before the first run
+  for (const Table2Row& row : table2) {
+    if (!options.rows.empty()
+        && std::ranges::find(options.rows, row.name) == options.rows.end())
+      continue;
+    chosen.push_back(&row);
+    scenes.push_back(read_scene(std::filesystem::path(options.scenes)
+                                    / fmt::format("{}.toml", row.scene),
+                                overrides_of(options)));
+  }
   TextOutput csv(options.output + ".csv", options.force);
   TextOutput table(options.output + ".md", options.force);
   const std::size_t threads =
@@ -157,10 +135,18 @@ void bench_table2(const BenchOptions& options) {
     // The jets of the table are stationary after 35 ms.
     const double from = options.stationary_from.value_or(std::min(0.035, end / 2));
     const auto run = [&](std::size_t p) {
-      if (!options.quiet)
+      std::optional<Progress> progress;
+      if (!options.quiet) {
         fmt::print(stderr, "L~ = {}{}, {} thread{}, {} s\n", chosen[i]->name,
                    chosen[i]->length == 0 ? "" : " cm", p, p == 1 ? "" : "s", end);
-      return measure(scenes[i], from, p, options.quiet);
+        progress.emplace(0.0, end);
+      }
+      const InterruptGuard interrupt;
+      return run_table2(scenes[i], end, from, p, {}, [&](const Simulation& s) {
+        if (progress) progress->show(s);
+        if (const char* signal = InterruptGuard::signal_name())
+          throw RunError(fmt::format("stopped by {}", signal));
+      });
     };
     Row row{.paper = chosen[i], .end_time = end, .serial = {}, .parallel = {}};
     if (!options.no_serial && threads > 1) row.serial = run(1);
@@ -184,8 +170,7 @@ void add_bench_command(CLI::App& app) {
   CLI::App* command = bench->add_subcommand(
       "table2", "Cost against the refinement length, next to the paper's Table 2");
   std::vector<std::string> names;
-  names.reserve(table2.size());
-  for (const Table2Row& row : table2) names.emplace_back(row.name);
+  std::ranges::transform(table2, std::back_inserter(names), &Table2Row::name);
   command
       ->add_option("--rows", options->rows,
                    "Rows, separated by commas: none,0.8,0.4,0.2 (L~ in cm); default: all")
@@ -197,19 +182,15 @@ void add_bench_command(CLI::App& app) {
   command->add_option("--rtol", options->rtol, "Tolerance of the integrator");
   command->add_option("--solver", options->solver, "Coulomb solver");
   command->add_option("--method", options->method, "Integrator");
-  command
-      ->add_option("--set", options->overrides,
-                   "Override a key of all scenes: table.key=value (repeatable)")
-      ->type_name("KEY=VALUE")
-      ->allow_extra_args(false);
+  add_set_option(*command, options->overrides,
+                 "Override a key of all scenes: table.key=value (repeatable)");
   add_threads_option(*command, options->threads);
-  command->add_flag("--no-serial", options->no_serial,
-                    "Do not run on one thread too: no parallel efficiency");
+  command->add_flag(
+      "--no-serial", options->no_serial,
+      "Do not also run on one thread; this leaves out the parallel efficiency");
   command
-      ->add_option(
-          "--stationary-from", options->stationary_from,
-          "Stationary means are taken from this time on [s]; default: 0.035 or half of "
-          "the run")
+      ->add_option("--stationary-from", options->stationary_from,
+                   "Start of the stationary means [s]; default: 0.035 or half of the run")
       ->type_name("T");
   command->add_option("--scenes", options->scenes, "Folder with table2_none.toml, ...")
       ->capture_default_str();

@@ -1,21 +1,14 @@
-#include "calibrate.hpp"
-
+#include "ehdjet/core/thread_count.hpp"
 #include "ehdjet/coulomb/cost_model.hpp"
 #include "ehdjet/io/text_output.hpp"
 #include "ehdjet/scene/calibration_file.hpp"
 
-#include <omp.h>
-
-#include <CLI/CLI.hpp>
-#include <filesystem>
 #include <fmt/format.h>
 #include <map>
 #include <memory>
-#include <optional>
-#include <string>
-#include <utility>
 
-#include "threads.hpp"
+#include "commands.hpp"
+#include "options.hpp"
 
 namespace ehdjet::cli {
 namespace {
@@ -28,9 +21,9 @@ struct CalibrateOptions {
 };
 
 void calibrate(const CalibrateOptions& options) {
-  use_threads(options.threads);
-  TextOutput output(options.output,
-                    options.force); // an existing file is refused before the measurement
+  const ThreadCount threads(options.threads);
+  // Refuses an existing file before the measurement.
+  TextOutput output(options.output, options.force);
   fmt::print(stderr, "timing the Coulomb solvers, about a minute\n");
   const CostModel model = CostModel::measured(options.simd);
   output.print("{}",
@@ -47,21 +40,6 @@ void calibrate(const CalibrateOptions& options) {
 }
 
 } // namespace
-
-void add_calibration_option(CLI::App& command, std::string& file) {
-  command
-      .add_option("--calibration", file,
-                  "Costs by which solver = \"auto\" chooses, written by `ehdjet calibrate`")
-      ->type_name("FILE");
-}
-
-std::vector<std::string> with_calibration(std::vector<std::string> overrides,
-                                          const std::string& file) {
-  if (!file.empty()) // a path in a scene is relative to the scene
-    overrides.push_back(fmt::format("coulomb.calibration=\"{}\"",
-                                    std::filesystem::absolute(file).string()));
-  return overrides;
-}
 
 void add_calibrate_command(CLI::App& app) {
   auto options = std::make_shared<CalibrateOptions>();

@@ -1,21 +1,16 @@
-#include "export.hpp"
-
 #include "ehdjet/io/export.hpp"
-#include "ehdjet/io/text_output.hpp"
-#include "ehdjet/run_files/run_reader.hpp"
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <memory>
-#include <optional>
-#include <string>
 #include <utility>
 
+#include "commands.hpp"
+#include "options.hpp"
+
 namespace ehdjet::cli {
+namespace {
 
 namespace fs = std::filesystem;
-
-namespace {
 
 struct Options {
   std::string run, output, part;
@@ -57,12 +52,10 @@ void run_export(const Options& options) {
 } // namespace
 
 void add_export_command(CLI::App& app) {
-  auto options = std::make_shared<Options>(); // shared with the callback
+  auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand(
       "export", "Write parts of a run file as CSV, XYZ or VTK (SI units)");
-  command->add_option("run", options->run, "Run file (HDF5)")
-      ->required()
-      ->type_name("RUN.h5");
+  add_run_file_option(*command, options->run);
   CLI::Option_group* format = command->add_option_group("Format", "one of");
   for (const auto& [part, help] : parts)
     format->add_flag_callback(

@@ -1,31 +1,22 @@
-#include "forces.hpp"
-
 #include "ehdjet/core/csv_table.hpp"
 #include "ehdjet/core/error.hpp"
+#include "ehdjet/core/thread_count.hpp"
 #include "ehdjet/coulomb/error_estimate.hpp"
 #include "ehdjet/coulomb/make_solver.hpp"
 #include "ehdjet/io/text_output.hpp"
 #include "ehdjet/scene/calibration_file.hpp"
 
-#include <omp.h>
-
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
-#include <cmath>
-#include <cstddef>
 #include <fmt/format.h>
 #include <functional>
 #include <map>
 #include <memory>
 #include <numeric>
-#include <optional>
-#include <string>
 #include <sys/resource.h>
-#include <vector>
 
-#include "calibrate.hpp"
-#include "threads.hpp"
+#include "commands.hpp"
+#include "options.hpp"
 
 namespace ehdjet::cli {
 namespace {
@@ -62,13 +53,12 @@ double peak_mib() {
 }
 
 double median(std::vector<double> v) {
-  const auto middle = v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2);
-  std::ranges::nth_element(v, middle);
-  if (v.size() % 2 == 1) return *middle;
-  return (*middle + *std::max_element(v.begin(), middle)) / 2;
+  std::ranges::sort(v);
+  return (v[(v.size() - 1) / 2] + v[v.size() / 2]) / 2;
 }
 
-/// A tolerance of |F| over all charges says little about most of them if a few have nearly all of it.
+/// If a few charges have nearly all of |F|^2, a tolerance relative to |F| over all charges does
+/// not limit the error of the other forces.
 void warn_of_the_strongest(ConstVec3View force) {
   constexpr double nearly_all = 0.9;
   std::vector<double> square(force.size());
@@ -82,21 +72,22 @@ void warn_of_the_strongest(ConstVec3View force) {
   if (strong > nearly_all * all)
     fmt::print(
         stderr,
-        "ehdjet: {} of {} charges have {:.3g} % of |F|^2, to which the tolerance refers: "
-        "the force on the others may be wrong by more. --norm per-bead keeps the tolerance "
-        "for each charge\n",
+        "ehdjet: {} of {} charges have {:.3g} % of |F|^2, to which the tolerance refers. "
+        "The relative error of the force on the others may be larger. --norm per-bead "
+        "keeps "
+        "the tolerance for each charge\n",
         few, square.size(), 100 * strong / all);
 }
 
 void forces(const ForcesOptions& options) {
-  use_threads(options.threads);
+  const ThreadCount threads(options.threads);
   SolverOptions solver_options{.solver = options.solver, .norm = options.norm};
   if (options.tolerance) solver_options.tolerance = *options.tolerance;
   if (!options.calibration.empty())
     solver_options.costs = read_calibration(options.calibration);
   const auto solver = make_coulomb_solver(solver_options);
   const Charges c = read_charges(options.beads);
-  std::optional<TextOutput> output; // an existing file is refused before the work
+  std::optional<TextOutput> output; // refuses an existing file before the work
   if (!options.output.empty()) output.emplace(options.output, options.force);
 
   const std::size_t n = c.q.size();
@@ -114,7 +105,7 @@ void forces(const ForcesOptions& options) {
     fmt::print(stderr, "ehdjet: {} pairs of charges at zero distance were skipped\n",
                solver->coincident_pairs());
 
-  CoulombErrorSample error; // the direct sum is what errors are measured against
+  CoulombErrorSample error; // 0 for the direct sum, which is the reference
   if (solver->name() != "direct") {
     error = sampled_error({c.positions(), c.q}, force, options.norm);
     if (options.norm == ToleranceNorm::global) warn_of_the_strongest(force);
@@ -150,14 +141,13 @@ void add_forces_command(CLI::App& app) {
   command->add_option("--solver", options->solver, "How the force is summed: " + solvers)
       ->capture_default_str();
   command
-      ->add_option("--tolerance", options->tolerance,
-                   "Relative error of the force that is allowed")
+      ->add_option("--tolerance", options->tolerance, "Allowed relative error of the force")
       ->check(CLI::Range(0.0, 1.0));
   command
-      ->add_option(
-          "--norm", options->norm,
-          "What the error is relative to: global, |F| over all charges; per-bead, what "
-          "acts on each charge")
+      ->add_option("--norm", options->norm,
+                   "What the error is relative to: global, |F| over all charges; per-bead, "
+                   "the sum of "
+                   "the magnitudes of the pair forces on each charge")
       ->transform(CLI::CheckedTransformer(std::map<std::string, ToleranceNorm>{
           {"global", ToleranceNorm::global}, {"per-bead", ToleranceNorm::per_bead}}));
   add_calibration_option(*command, options->calibration);

@@ -2,8 +2,9 @@
 
 namespace ehdjet::cli {
 
-/// While it lives, SIGINT and SIGTERM are noted instead of ending the process, so that a run can
-/// stop between two steps and close its file. A second signal ends the process at once.
+/// While an object of this class exists, SIGINT and SIGTERM are recorded instead of ending the
+/// process. A run can then stop between two steps and close its file. A second signal ends the
+/// process at once.
 class InterruptGuard {
 public:
   InterruptGuard();

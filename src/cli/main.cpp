@@ -6,17 +6,11 @@
 #include <fmt/format.h>
 #include <new>
 
-#include "bench.hpp"
-#include "calibrate.hpp"
-#include "check.hpp"
-#include "export.hpp"
-#include "forces.hpp"
-#include "plot.hpp"
-#include "run.hpp"
+#include "commands.hpp"
 #include "version.hpp"
 
 // Exit codes: 0 success, 1 the run failed, 2 the input is wrong, 3 a bug in ehdjet.
-// NOLINTNEXTLINE(bugprone-exception-escape): of the handlers' own text
+// NOLINTNEXTLINE(bugprone-exception-escape): the handlers themselves might throw
 int main(int argc, char** argv) {
   CLI::App app{"ehdjet: electrically charged jets as chains of beads", "ehdjet"};
   try {

@@ -1,27 +1,22 @@
-#include "plot.hpp"
-
 #include "ehdjet/core/error.hpp"
-#include "ehdjet/io/plot_page.hpp"
-#include "ehdjet/io/text_output.hpp"
-#include "ehdjet/run_files/run_reader.hpp"
+#include "ehdjet/io/export.hpp"
 
-#include <CLI/CLI.hpp>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
 #include <memory>
-#include <optional>
 #include <spawn.h>
-#include <string>
 #include <sys/wait.h>
 #include <system_error>
 #include <unistd.h>
 
+#include "commands.hpp"
+#include "options.hpp"
+
 namespace ehdjet::cli {
+namespace {
 
 namespace fs = std::filesystem;
-
-namespace {
 
 struct Options {
   std::string run, output;
@@ -29,7 +24,7 @@ struct Options {
   bool force = false;
 };
 
-// A temporary file.
+/// Removes a temporary file at the end.
 struct Scratch {
   fs::path path;
   explicit Scratch(fs::path p)
@@ -54,9 +49,8 @@ void run_gnuplot(const fs::path& script) {
   int status = 0;
   while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
-  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) {
+  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
     throw RunError("gnuplot failed; its message is above");
-  }
 }
 
 void run_plot(const Options& options) {
@@ -64,12 +58,8 @@ void run_plot(const Options& options) {
   const fs::path output = options.output.empty()
                               ? fs::path(options.run).replace_extension("png")
                               : fs::path(options.output);
-  std::error_code ignored;
-  if (!options.force && fs::exists(output, ignored)) {
-    throw InputError(output.string()
-                     + " exists: choose another name with -o or overwrite it with --force");
-  }
-  // gnuplot draws beside the final name, so that a failure leaves an older plot as it was.
+  refuse_existing(output, options.force);
+  // gnuplot draws to a temporary file: if it fails, an older plot stays as it was.
   const std::string id = std::to_string(::getpid());
   const Scratch drawn(
       output.parent_path()
@@ -87,12 +77,10 @@ void run_plot(const Options& options) {
 } // namespace
 
 void add_plot_command(CLI::App& app) {
-  auto options = std::make_shared<Options>(); // shared with the callback
+  auto options = std::make_shared<Options>();
   CLI::App* command =
       app.add_subcommand("plot", "Draw a run file on one page (needs gnuplot)");
-  command->add_option("run", options->run, "Run file (HDF5)")
-      ->required()
-      ->type_name("RUN.h5");
+  add_run_file_option(*command, options->run);
   command
       ->add_option("-o,--output", options->output,
                    "Page to draw; default: RUN.png beside the run file")

@@ -29,12 +29,9 @@ Progress::Progress(double start_time, double end_time)
     , interval_(terminal_ ? terminal_interval : plain_interval)
     , next_(interval_) {}
 
-double Progress::seconds() const {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-}
-
 void Progress::show(const Simulation& simulation) {
-  const double wall = seconds();
+  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start_;
+  const double wall = elapsed.count();
   if (wall < next_) return;
   next_ = wall + interval_;
   const double t = simulation.jet().time;

@@ -1,48 +1,38 @@
-#include "run.hpp"
-
 #include "ehdjet/core/error.hpp"
 #include "ehdjet/runs/run_scene.hpp"
-#include "ehdjet/scene/read_scene.hpp"
 
-#include <CLI/CLI.hpp>
 #include <cmath>
-#include <cstddef>
 #include <filesystem>
 #include <fmt/format.h>
 #include <memory>
-#include <optional>
-#include <string>
-#include <vector>
 
-#include "calibrate.hpp"
+#include "commands.hpp"
 #include "interrupt.hpp"
+#include "options.hpp"
 #include "progress.hpp"
-#include "threads.hpp"
 #include "version.hpp"
 
 namespace ehdjet::cli {
 namespace {
 
 struct Options {
-  std::string scene, output, calibration, continued;
-  std::vector<std::string> overrides;
+  SceneOptions scene;
+  std::string output, continued;
   std::optional<std::size_t> threads;
   bool quiet = false, force = false;
 };
 
-/// Says so when a check of the Coulomb force finds more than the tolerance.
+/// Prints a message when a check finds an error of the Coulomb force above the tolerance.
 void report_violations(Simulation& simulation, double tolerance) {
-  simulation.after_each_step([tolerance,
-                              logged = simulation.statistics().coulomb_violations](
-                                 const Simulation& s) mutable {
+  auto reported = simulation.statistics().coulomb_violations;
+  simulation.after_each_step([=](const Simulation& s) mutable {
     const RunStatistics& statistics = s.statistics();
-    if (statistics.coulomb_violations == logged) return;
-    logged = statistics.coulomb_violations;
-    fmt::print(
-        stderr,
-        "\nat t = {:.9g} s the Coulomb force was off by {:.2g}, more than the tolerance "
-        "{:g}; the solver is stricter from here on\n",
-        s.jet().time, *statistics.coulomb_error, tolerance);
+    if (statistics.coulomb_violations == reported) return;
+    reported = statistics.coulomb_violations;
+    fmt::print(stderr,
+               "\nat t = {:.9g} s the error of the Coulomb force was {:.2g}, more than the "
+               "tolerance {:g}; the solver is stricter from now on\n",
+               s.jet().time, *statistics.coulomb_error, tolerance);
   });
 }
 
@@ -89,17 +79,16 @@ std::string summary(const RunResult& result, const Scene& scene,
 }
 
 void run(const Options& options) {
-  const Scene scene =
-      read_scene(options.scene, with_calibration(options.overrides, options.calibration));
+  const Scene scene = options.scene.read();
   const std::filesystem::path path =
       options.output.empty()
-          ? std::filesystem::path(options.scene).filename().replace_extension(".h5")
+          ? std::filesystem::path(options.scene.scene).filename().replace_extension(".h5")
           : std::filesystem::path(options.output);
   std::optional<Progress> progress;
   std::optional<InterruptGuard> interrupt;
   RunOptions run;
   run.overwrite = options.force, run.threads = options.threads;
-  run.scene_file = options.scene, run.provenance = environment();
+  run.scene_file = options.scene.scene, run.provenance = environment();
   run.interrupted = InterruptGuard::signal_name;
   if (!options.continued.empty()) run.continue_from = options.continued;
   run.started = [&](Simulation& simulation) {
@@ -128,21 +117,16 @@ void add_run_command(CLI::App& app) {
   auto options = std::make_shared<Options>();
   CLI::App* command =
       app.add_subcommand("run", "Simulate a scene and write a run file (HDF5)");
-  command->add_option("SCENE", options->scene, "Scene file (TOML)")->required();
+  options->scene.add_to(*command)->required();
   command->add_option("-o,--output", options->output,
                       "Run file; default: the scene's name with .h5, in this folder");
   command
-      ->add_option("--set", options->overrides,
-                   "Override a key: table.key=value (repeatable)")
-      ->type_name("KEY=VALUE")
-      ->allow_extra_args(false);
-  command
-      ->add_option("--continue", options->continued,
-                   "Go on from the last checkpoint (output.checkpoints) of a run of this "
-                   "scene; with another run.end_time and [output], if you like")
+      ->add_option(
+          "--continue", options->continued,
+          "Continue from the last checkpoint (output.checkpoints) of a run of this "
+          "scene. Only run.end_time and [output] may differ")
       ->type_name("FILE.h5");
   add_threads_option(*command, options->threads);
-  add_calibration_option(*command, options->calibration);
   command->add_flag("--quiet", options->quiet, "Print nothing but errors");
   command->add_flag("--force", options->force, "Overwrite the run file if it exists");
   command->callback([options] { run(*options); });

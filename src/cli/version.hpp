@@ -5,8 +5,8 @@
 
 namespace ehdjet::cli {
 
-/// Version, commit, compiler, instruction set, threads and library versions, by name: what a run
-/// file records and `--version` prints.
+/// Version, commit, compiler, instruction set, threads and library versions, by name. A run file
+/// records them, and `--version` prints them.
 std::map<std::string, std::string> environment();
 
 std::string version_text();

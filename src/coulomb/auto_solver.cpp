@@ -1,20 +1,16 @@
-#include "auto_solver.hpp"
-
-#include "ehdjet/coulomb/make_solver.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <fmt/format.h>
 #include <utility>
-#include <vector>
 
-#include "crowding.hpp"
+#include "clusters.hpp"
+#include "solvers.hpp"
 
 namespace ehdjet::detail {
 namespace {
 
-/// Another solver must be cheaper by this factor to be worth a switch.
+/// Another solver is chosen only if its cost is below this fraction of the present cost.
 constexpr double worth_switching = 0.9;
 
 class AutoSolver final : public CoulombSolver {
@@ -28,7 +24,8 @@ public:
     used_ = chosen_;
     solver(used_).add_force(charges, force);
   }
-  /// By the number of pairs, and by the larger of both sets; the choice for `add_force` stays.
+  /// The cost of the direct sum follows from the number of pairs, that of the fast multipole method
+  /// from the larger group. The choice for `add_force` does not change.
   void add_force_from(const PointCharges& sources, const PointCharges& targets,
                       Vec3View force) override {
     const std::size_t more = std::max(sources.size(), targets.size());
@@ -78,14 +75,14 @@ private:
   [[nodiscard]] double price_of(std::size_t k) const {
     return costs_.cost(priced_solvers[k], charges_, options_.tolerance, crowding_);
   }
-  /// Looks at the charges again when their number has changed, and every so often.
+  /// Chooses again when the number of charges has changed, and at least once in 256 calls.
   void choose(const PointCharges& charges) {
-    constexpr std::size_t often = 256;
-    if (charges.size() == charges_ && ++calls_ < often) return;
+    constexpr std::size_t most_calls = 256;
+    if (charges.size() == charges_ && ++calls_ < most_calls) return;
     const bool first = charges_ == 0;
     charges_ = charges.size(), calls_ = 0;
     if (charges_ == 0) return;
-    crowding_ = look_.of(charges);
+    crowding_ = measure_.of(charges);
     const std::size_t other = first ? (price_of(0) <= price_of(1) ? 0 : 1) : 1 - chosen_;
     if (!first && !(price_of(other) < worth_switching * price_of(chosen_))) return;
     if (!first) ++switches_;
@@ -107,10 +104,11 @@ private:
 
   SolverOptions options_;
   CostModel costs_;
-  std::array<std::unique_ptr<CoulombSolver>, priced_solvers.size()> solvers_; // as needed
-  Crowding look_;
+  /// A solver is made when it is first used.
+  std::array<std::unique_ptr<CoulombSolver>, priced_solvers.size()> solvers_;
+  Crowding measure_;
   double crowding_ = 0;
-  std::size_t chosen_ = 0, used_ = 0; ///< for `add_force`; by the last call
+  std::size_t chosen_ = 0, used_ = 0; ///< for `add_force`; in the last call
   std::size_t charges_ = 0, calls_ = 0, switches_ = 0, tightened_ = 0;
 };
 

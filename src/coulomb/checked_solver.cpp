@@ -1,5 +1,3 @@
-#include "checked_solver.hpp"
-
 #include "ehdjet/coulomb/error_estimate.hpp"
 
 #include <algorithm>
@@ -7,6 +5,8 @@
 #include <fmt/format.h>
 #include <utility>
 #include <vector>
+
+#include "solvers.hpp"
 
 namespace ehdjet::detail {
 namespace {
@@ -63,8 +63,7 @@ private:
     checks_.last = sampled_error(charges, force, norm, sampled).in(norm);
     checks_.largest = std::max(checks_.largest, checks_.last);
     ++checks_.number;
-    // The direct sum promises 0 and has its round-off.
-    constexpr double round_off = 1e-12;
+    constexpr double round_off = 1e-12; // the tolerance of the direct sum is 0
     if (checks_.last <= std::max(tolerance, round_off)) return;
     ++checks_.violations;
     solver_->tighten();

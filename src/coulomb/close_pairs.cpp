@@ -13,25 +13,27 @@ namespace {
 
 constexpr std::uint32_t none = 0xffffffffU;
 
-/// Cells of a million close distances: rarely is a neighbour of a charge in another cell.
+/// Cells per scaled length. A cell is a million close distances wide, so that close charges are
+/// rarely in different cells.
 constexpr double cells = 0x1p-20 / close_distance;
-/// Farther out than so many cells two coordinates are equal or not close.
+/// Beyond so many cells from the origin, two coordinates are either equal or not close.
 constexpr double far_cell = 0x1p34;
-constexpr double at_edge = 0x1p-18; ///< within reach of the next cell, rounding included
+/// In this distance from the next cell [cells], a close charge may be there, rounding included.
+constexpr double at_edge = 0x1p-18;
 
 using Cell = std::array<double, 3>;
 
 std::size_t hash(const Cell& cell) {
   std::uint64_t h = 0;
   for (const double c : cell) {
-    h = (h ^ std::bit_cast<std::uint64_t>(c + 0.0)) * 0x9e3779b97f4a7c15U; // no -0
+    h = (h ^ std::bit_cast<std::uint64_t>(c + 0.0)) * 0x9e3779b97f4a7c15U; // -0 becomes 0
     h ^= h >> 29U;
   }
   return static_cast<std::size_t>(h);
 }
 
 double in_cells(double scaled) {
-  return scaled * cells + 0.5; // the origin in the middle of a cell
+  return scaled * cells + 0.5; // the origin is in the middle of a cell
 }
 
 Cell cell_of(const Vec3& r, double scale) {
@@ -41,11 +43,11 @@ Cell cell_of(const Vec3& r, double scale) {
   return cell;
 }
 
-/// Calls visit with the cells in which places close to r may be.
+/// Calls `visit` for each cell that may contain places close to r.
 template <class Visit>
 void for_cells_around(const Vec3& r, double scale, const Visit& visit) {
   std::array<std::array<double, 2>, 3> choice;
-  std::array<int, 3> choices{1, 1, 1};
+  std::array<std::size_t, 3> choices{1, 1, 1};
   for (std::size_t k = 0; k < 3; ++k) {
     const double t = in_cells(scale * r[static_cast<int>(k)]), cell = std::floor(t);
     choice[k] = {cell, cell};
@@ -53,15 +55,13 @@ void for_cells_around(const Vec3& r, double scale, const Visit& visit) {
     if (t - cell < at_edge) choice[k][1] = cell - 1, choices[k] = 2;
     if (cell + 1 - t < at_edge) choice[k][1] = cell + 1, choices[k] = 2;
   }
-  for (int a = 0; a < choices[0]; ++a)
-    for (int b = 0; b < choices[1]; ++b)
-      for (int c = 0; c < choices[2]; ++c)
-        visit(Cell{choice[0][static_cast<std::size_t>(a)],
-                   choice[1][static_cast<std::size_t>(b)],
-                   choice[2][static_cast<std::size_t>(c)]});
+  for (std::size_t a = 0; a < choices[0]; ++a)
+    for (std::size_t b = 0; b < choices[1]; ++b)
+      for (std::size_t c = 0; c < choices[2]; ++c)
+        visit(Cell{choice[0][a], choice[1][b], choice[2][c]});
 }
 
-/// k_C q_1 q_2 d/d^3 without overflow on the way.
+/// k_C q_1 q_2 d/d^3 without overflow of intermediate results.
 Vec3 force_of_pair(const Vec3& d, double q1, double q2) {
   const double size = d.cwiseAbs().maxCoeff();
   const Vec3 u = d / size;
@@ -71,17 +71,17 @@ Vec3 force_of_pair(const Vec3& d, double q1, double q2) {
 
 } // namespace
 
-std::size_t ClosePairs::add_forces(const PointCharges& sources, const PointCharges& targets,
-                                   double scale, Vec3View force) {
+std::uint32_t& ClosePairs::list_of(const Cell& cell) {
+  return lists_[hash(cell) & (lists_.size() - 1)];
+}
+
+void ClosePairs::collect_places(const PointCharges& sources, double scale) {
   lists_.assign(std::bit_ceil(2 * sources.size()), none);
   places_.clear();
   places_.reserve(sources.size());
-  const auto list = [&](const Cell& cell) -> std::uint32_t& {
-    return lists_[hash(cell) & (lists_.size() - 1)];
-  };
   for (std::size_t j = 0; j < sources.size(); ++j) {
     const Vec3 r = sources.r[j];
-    std::uint32_t& first = list(cell_of(r, scale));
+    std::uint32_t& first = list_of(cell_of(r, scale));
     std::uint32_t at = first;
     while (at != none && places_[at].r != r) at = places_[at].next;
     if (at == none) {
@@ -91,13 +91,18 @@ std::size_t ClosePairs::add_forces(const PointCharges& sources, const PointCharg
     }
     places_[at].charge += sources.q[j], ++places_[at].number;
   }
+}
+
+std::size_t ClosePairs::add_forces(const PointCharges& sources, const PointCharges& targets,
+                                   double scale, Vec3View force) {
+  collect_places(sources, scale);
   std::size_t coincident = 0;
   for (std::size_t i = 0; i < targets.size(); ++i) {
     const Vec3 r = targets.r[i];
     for_cells_around(r, scale, [&](const Cell& cell) {
-      for (std::uint32_t at = list(cell); at != none; at = places_[at].next) {
+      for (std::uint32_t at = list_of(cell); at != none; at = places_[at].next) {
         const Place& place = places_[at];
-        if (cell_of(place.r, scale) != cell) continue; // another one with the same hash
+        if (cell_of(place.r, scale) != cell) continue; // another cell has the same hash
         if (place.r == r) {
           coincident += place.number;
           continue;
@@ -105,7 +110,7 @@ std::size_t ClosePairs::add_forces(const PointCharges& sources, const PointCharg
         bool close = true;
         for (int k = 0; k < 3; ++k)
           close = close && std::abs(scale * r[k] - scale * place.r[k]) < close_distance;
-        if (close && targets.q[i] != 0 && place.charge != 0) // or 0 * inf
+        if (close && targets.q[i] != 0 && place.charge != 0) // avoids 0 * inf
           force.add(i, force_of_pair(r - place.r, targets.q[i], place.charge));
       }
     });

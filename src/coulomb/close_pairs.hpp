@@ -2,31 +2,35 @@
 
 #include "ehdjet/coulomb/solver.hpp"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
 namespace ehdjet::detail {
 
-/// The pairs that the kernels leave out because they are close (pair_kernel.hpp), computed from the
-/// original coordinates. A hash table of places finds them: the cost is O(n), also where many
-/// charges have one place, because charges of one place act as one.
+/// Computes the close pairs, which the kernels leave out (pair_kernel.hpp), from the original
+/// coordinates. A hash table of places finds them. Charges at one place act as one charge, so that
+/// the cost is O(n) even if many charges have the same place.
 class ClosePairs {
 public:
-  /// Forces of close sources on the targets, `scale` the factor of the kernels' coordinates.
-  /// Returns the number of pairs of a source and a target at the same place.
+  /// Adds the forces of close sources on the targets. `scale` is the factor of the kernels'
+  /// coordinates. Returns the number of pairs of a source and a target at the same place.
   std::size_t add_forces(const PointCharges& sources, const PointCharges& targets,
                          double scale, Vec3View force);
 
 private:
-  /// Distinct places of sources, and what is there.
+  /// A distinct place of sources and their total charge.
   struct Place {
     Vec3 r;
     double charge;
-    std::uint32_t number, next; ///< of sources; the place that follows in the same list
+    std::uint32_t number, next; ///< number of sources; the next place in the same list
   };
+  std::uint32_t& list_of(const std::array<double, 3>& cell);
+  void collect_places(const PointCharges& sources, double scale);
+
   std::vector<Place> places_;
-  std::vector<std::uint32_t> lists_; ///< first place of each
+  std::vector<std::uint32_t> lists_; ///< the first place of each list
 };
 
 } // namespace ehdjet::detail

@@ -1,14 +1,11 @@
-#include "cluster_energy.hpp"
-
 #include "ehdjet/core/compensated_sum.hpp"
 #include "ehdjet/core/error.hpp"
 #include "ehdjet/coulomb/pair_sum.hpp"
 
-#include <omp.h>
-
 #include <vector>
 
 #include "clusters.hpp"
+#include "solvers.hpp"
 
 namespace ehdjet::detail {
 namespace {
@@ -20,7 +17,7 @@ struct EnergyProblem {
   const ClusterTree& tree;
   const Multipoles& multipoles;
 
-  /// Of the charges of a leaf in the field of a cluster.
+  /// The energy of the charges of a leaf in the potential of a cluster.
   [[nodiscard]] double energy_of(std::uint32_t leaf, std::uint32_t source) const {
     const Cluster &target = tree.clusters()[leaf], &cluster = tree.clusters()[source];
     const ChargeColumns c = charges.columns();
@@ -72,7 +69,7 @@ double cluster_energy(const Kernels& kernels, const ClusterParameters& parameter
   }
   CompensatedSum sum;
   for (const double e : energies) sum += e;
-  return charges.energy(sum / 2); // each pair was met from both sides
+  return charges.energy(sum / 2); // each pair has been counted twice
 }
 
 } // namespace ehdjet::detail

@@ -1,36 +1,156 @@
-#include "cluster_solver.hpp"
-
 #include "ehdjet/core/error.hpp"
 
 #include <omp.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fmt/format.h>
+#include <limits>
+#include <numeric>
 #include <utility>
+#include <vector>
 
-#include "cluster_energy.hpp"
 #include "clusters.hpp"
-#include "force_scale.hpp"
+#include "solvers.hpp"
 
 namespace ehdjet::detail {
 namespace {
 
-/// Errors of many pairs add up in a force: at random or, on a ring, all with the same sign. So
-/// each pair gets a share of the tolerance that falls with the number of pairs that act on a
-/// charge. On a curve the force of a cluster of size s on its neighbours goes with 1/s, so that
-/// under a bound for the error, (s/d)^(p+2)/s, clusters of half the size have their distance d/s,
-/// and with it their number, larger by 2^(1/(p+2)): a geometric series over the levels. With this
-/// factor the error stays below half the tolerance on jets and below twice the tolerance on a
-/// ring, from 1e3 to 1e6 charges.
+/// The errors of many pairs of clusters add up in a force: at random or, on a ring, all with the
+/// same sign. Each pair therefore gets a share of the tolerance that decreases with the number of
+/// pairs that act on a charge. On a curve the force of a cluster of size s on its neighbours is
+/// proportional to 1/s. If (s/d)^(p+2)/s is bounded, clusters of half the size have a ratio d/s, and
+/// hence a number, that is larger by the factor 2^(1/(p+2)). The sum over the levels is a geometric
+/// series. With this share the error is below half the tolerance on jets and below twice the
+/// tolerance on a ring, from 1e3 to 1e6 charges.
 double margin_on_curves(std::size_t levels, int order) {
   const double ratio = std::exp2(1.0 / (order + 2));
   const double pairs = (std::pow(ratio, static_cast<double>(levels)) - 1) / (ratio - 1);
   return 5 / std::max(pairs, 8.0);
 }
-/// Charges that fill space have many more pairs, and a few that move among many that rest feel these
-/// with net forces that are small against each of them.
+/// Charges that fill space have many more pairs. If a few charges move among many at rest, their net
+/// forces are small compared with the forces of the pairs.
 constexpr double margin_in_space = 0.2, margin_among_resting = 0.01;
+
+/// Root mean square of the net force on the targets that move. Errors are relative to it. Each force
+/// call estimates it again from the forces on a few groups of charges, with multipoles of low order,
+/// so that the result of a call depends only on its arguments.
+class ForceScale {
+public:
+  ForceScale(const ExpansionKernel& kernel, int order)
+      : expansions_(kernel, std::min(scale_order, order)) {}
+
+  /// Every thread of the team must call it.
+  void sample(const ClusterProblem& problem);
+  /// The result without k_C, in the units of clusters. The few largest forces are left out, because
+  /// a sample must not overestimate the number of such charges. For the norm `moving` the strongest
+  /// tenth is left out, according to its definition.
+  [[nodiscard]] double value(ToleranceNorm norm);
+
+private:
+  static constexpr int scale_order = 4; // of the multipoles
+  static constexpr std::size_t most_groups = 16, charges_per_group = 128;
+  static constexpr double opening = 0.4;
+
+  void choose_groups(const ClusterProblem& problem);
+  void add_field(const ClusterProblem& problem, std::uint32_t cluster, std::size_t begin);
+
+  Expansions expansions_;
+  std::vector<std::size_t> groups_;    ///< first charge of each sampled group
+  std::vector<double> squares_;        ///< squares of the sampled forces
+  std::vector<unsigned char> ignored_; ///< flags of close pairs, which are not used
+};
+
+// The groups are evenly spaced among the charges that move.
+void ForceScale::choose_groups(const ClusterProblem& p) {
+  const std::uint8_t* moves = p.charges.moves();
+  const std::size_t begin = p.targets.begin(), end = begin + p.targets.charges();
+  const std::size_t groups = (end - begin + padding - 1) / padding;
+  const std::size_t moving =
+      moves == nullptr
+          ? end - begin
+          : static_cast<std::size_t>(std::count(moves + begin, moves + end, 1));
+  const std::size_t sampled =
+      std::min(groups, std::clamp<std::size_t>(moving / charges_per_group, 4, most_groups));
+  groups_.clear();
+  if (moves == nullptr)
+    for (std::size_t k = 0; k < sampled; ++k)
+      groups_.push_back(begin + groups * (2 * k + 1) / (2 * sampled) * padding);
+  std::size_t met = 0, k = 0;
+  for (std::size_t i = begin; moves != nullptr && i < end; ++i) {
+    if (moves[i] == 0 || met++ != moving * (2 * k + 1) / (2 * sampled)) continue;
+    const std::size_t group = i / padding * padding;
+    if (groups_.empty() || groups_.back() != group) groups_.push_back(group);
+    while (k < sampled && moving * (2 * k + 1) / (2 * sampled) < met) ++k;
+  }
+  squares_.assign(groups_.size() * padding, -1.0);
+  if (ignored_.size() < p.charges.length()) ignored_.resize(p.charges.length());
+}
+
+void ForceScale::sample(const ClusterProblem& p) {
+#pragma omp single
+  choose_groups(p);
+  const ChargeColumns c = p.charges.columns();
+  const FieldColumns g = p.charges.field(0);
+  const std::uint8_t* moves = p.charges.moves();
+  constexpr double unit = ExpansionKernel::unit;
+#pragma omp for schedule(static)
+  for (std::size_t k = 0; k < groups_.size(); ++k) {
+    const std::size_t begin = groups_[k],
+                      end = std::min(begin + padding,
+                                     p.targets.begin() + p.targets.charges());
+    for (double* column : {g.x, g.y, g.z}) std::fill_n(column + begin, padding, 0.0);
+    add_field(p, 0, begin);
+    for (std::size_t i = begin; i < end; ++i) {
+      if (moves != nullptr && moves[i] == 0) continue;
+      const double f = c.q[i] / (unit * unit);
+      const double fx = f * g.x[i], fy = f * g.y[i], fz = f * g.z[i];
+      squares_[k * padding + i - begin] = fx * fx + fy * fy + fz * fz;
+    }
+  }
+}
+
+double ForceScale::value(ToleranceNorm norm) {
+  std::erase(squares_, -1.0); // padding and charges at rest
+  if (squares_.empty()) return 0;
+  std::ranges::sort(squares_);
+  const bool moving = norm == ToleranceNorm::moving;
+  const std::size_t kept = squares_.size() - squares_.size() / (moving ? 10 : 32);
+  const double sum = std::accumulate(
+      squares_.begin(), squares_.begin() + static_cast<std::ptrdiff_t>(kept), 0.0);
+  return std::sqrt(sum / static_cast<double>(moving ? kept : squares_.size()));
+}
+
+void ForceScale::add_field(const ClusterProblem& p, std::uint32_t at, std::size_t begin) {
+  const Cluster& cluster = p.sources.clusters()[at];
+  const ChargeColumns c = p.charges.columns();
+  const FieldColumns g = p.charges.field(0);
+  constexpr double unit = ExpansionKernel::unit;
+  const std::size_t end =
+      std::min(begin + padding, p.targets.begin() + p.targets.charges());
+  double nearest = std::numeric_limits<double>::infinity();
+  for (std::size_t i = begin; i < end; ++i) {
+    const double place[3] = {c.x[i] * unit, c.y[i] * unit, c.z[i] * unit};
+    nearest = std::min(nearest, between(cluster.centre, place).norm());
+  }
+  if (cluster.radius < opening * nearest) {
+    std::array<double, 3 * coefficients(scale_order + 1)> gradient;
+    expansions_.kernel.multipole_gradient(expansions_.numbers, p.multipoles[at],
+                                          gradient.data());
+    expansions_.kernel.multipole_to_charges(
+        expansions_.numbers, c, g, begin, begin + padding, cluster.centre, gradient.data());
+  } else if (!cluster.is_leaf()) {
+    add_field(p, cluster.child, begin), add_field(p, cluster.child + 1, begin);
+  } else {
+    // The kernel leaves out close pairs, also that of a charge with itself.
+    p.pairs.add_fields_one_way(c, g,
+                               {begin / p.pairs.targets,
+                                (begin + padding) / p.pairs.targets, 1, cluster.begin,
+                                cluster.end},
+                               ignored_.data());
+  }
+}
 
 class ClusterSolver final : public CoulombSolver {
 public:
@@ -127,7 +247,8 @@ private:
                           : charges_.moves() == nullptr ? margin_in_space
                                                         : margin_among_resting;
     double allowed = margin * strictness_ * parameters_.tolerance;
-    // A few sources act on a charge through one pair of clusters only: nothing averages its error.
+    // Few sources may act on a charge through a single pair of clusters, whose error is not
+    // averaged.
     if (acceptance_.per_bead && !mutual) allowed /= parameters_.order + 1;
     return acceptance_.per_bead ? allowed : allowed * scale_.value(parameters_.norm);
   }
@@ -137,7 +258,7 @@ private:
   Expansions expansions_;
   ScaledCharges charges_;
   Clusters clusters_[2];               ///< of sources and of targets
-  Multipoles multipoles_, of_targets_; ///< these for their lumpiness only
+  Multipoles multipoles_, of_targets_; ///< the latter only for Multipoles::weigh
   ForceScale scale_;
   Acceptance acceptance_;
   std::unique_ptr<FarField> far_field_;

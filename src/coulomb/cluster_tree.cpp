@@ -4,16 +4,38 @@
 #include <array>
 #include <cmath>
 
-#include "expansion_kernel.hpp"
+#include "multipoles.hpp"
 
 namespace ehdjet::detail {
 namespace {
 
 constexpr std::size_t parallel_from = 4096; // charges
 constexpr std::size_t parallel_from_parents = 1024;
+constexpr std::size_t part_of_leaves = 64; // number of leaves that are compared
 
-double norm(double x, double y, double z) {
-  return std::sqrt(x * x + y * y + z * z);
+/// Compares the size of the leaves with the size of all of them together. The leaves of a curve are
+/// smaller than those of charges that fill space. The leaves of unordered charges are as large as
+/// all charges together. The outer tenths are left out, because any leaf may have a distant charge.
+bool are_ordered(std::span<const Cluster> clusters, std::span<const std::uint32_t> leaves) {
+  std::array<double, part_of_leaves> values;
+  const auto number = static_cast<double>(leaves.size());
+  const auto of_leaves = [&](double part, auto value) { // a quantile
+    const auto end =
+        std::ranges::transform(leaves, values.begin(), [&](std::uint32_t leaf) {
+          return value(clusters[leaf]);
+        }).out;
+    const auto at = values.begin() + static_cast<std::ptrdiff_t>(part * (number - 1));
+    std::nth_element(values.begin(), at, end);
+    return *at;
+  };
+  double square = 0;
+  for (int k = 0; k < 3; ++k) {
+    const double low = of_leaves(0.1, [k](const Cluster& c) { return c.low[k]; });
+    const double high = of_leaves(0.9, [k](const Cluster& c) { return c.high[k]; });
+    square += (high - low) * (high - low);
+  }
+  const double leaf = of_leaves(0.5, [](const Cluster& c) { return c.radius; });
+  return leaf <= 1.5 * std::sqrt(square) / 2 / std::cbrt(number);
 }
 
 } // namespace
@@ -35,7 +57,7 @@ void ClusterTree::shape(std::size_t first, std::size_t n, std::size_t leaf) {
       leaves_.push_back(static_cast<std::uint32_t>(i));
       continue;
     }
-    // Halves are whole numbers of leaves, all full but the last one of the jet.
+    // Each half is a whole number of leaves. All leaves except the last one are full.
     const std::size_t pieces = (end - begin + leaf - 1) / leaf;
     const auto middle = static_cast<std::uint32_t>(begin + pieces / 2 * leaf);
     clusters_[i].child = static_cast<std::uint32_t>(clusters_.size());
@@ -93,55 +115,18 @@ void ClusterTree::bound_parent(const Cluster& a, const Cluster& b, Cluster& pare
     parent.high[k] = std::max(a.high[k], b.high[k]);
     parent.centre[k] = (parent.low[k] + parent.high[k]) / 2;
   }
-  double reach = 0; // of the children's balls
+  double reach = 0; // radius of a ball that contains the children's balls
   for (const Cluster* c : {&a, &b})
-    reach = std::max(reach, c->radius
-                                + norm(c->centre[0] - parent.centre[0],
-                                       c->centre[1] - parent.centre[1],
-                                       c->centre[2] - parent.centre[2]));
-  const double corner = norm(parent.high[0] - parent.low[0], parent.high[1] - parent.low[1],
-                             parent.high[2] - parent.low[2])
-                        / 2;
-  parent.radius = std::min(reach, corner);
+    reach = std::max(reach, c->radius + between(parent.centre, c->centre).norm());
+  parent.radius = std::min(reach, between(parent.low, parent.high).norm() / 2);
   parent.charge = a.charge + b.charge;
   parent.moving = a.moving + b.moving;
   parent.square =
       parent.moving > 0 ? (a.square * a.moving + b.square * b.moving) / parent.moving : 0;
 }
 
-namespace {
-
-constexpr std::size_t part_of_leaves = 64; // that are looked at together
-
-/// Leaves of a curve are much smaller than those of charges that fill space with as many leaves;
-/// leaves of charges in no order are as large as all of them together. Tenths at both ends are left
-/// out: a charge far away may be in any leaf.
-bool are_ordered(std::span<const Cluster> clusters, std::span<const std::uint32_t> leaves) {
-  std::array<double, part_of_leaves> values;
-  const auto number = static_cast<double>(leaves.size());
-  const auto of_leaves = [&](double part, auto value) { // a quantile
-    const auto end =
-        std::ranges::transform(leaves, values.begin(), [&](std::uint32_t leaf) {
-          return value(clusters[leaf]);
-        }).out;
-    const auto at = values.begin() + static_cast<std::ptrdiff_t>(part * (number - 1));
-    std::nth_element(values.begin(), at, end);
-    return *at;
-  };
-  double square = 0;
-  for (int k = 0; k < 3; ++k) {
-    const double low = of_leaves(0.1, [k](const Cluster& c) { return c.low[k]; });
-    const double high = of_leaves(0.9, [k](const Cluster& c) { return c.high[k]; });
-    square += (high - low) * (high - low);
-  }
-  const double leaf = of_leaves(0.5, [](const Cluster& c) { return c.radius; });
-  return leaf <= 1.5 * std::sqrt(square) / 2 / std::cbrt(number);
-}
-
-} // namespace
-
-// Charges may be in order from place to place and in none within each, so that some parts are
-// looked at one by one.
+// Several parts are examined separately: groups of charges may follow each other in order, while the
+// charges within each group do not.
 bool ClusterTree::is_ordered() const {
   constexpr std::size_t too_few = 16, most_parts = 8;
   if (leaves_.size() < too_few) return true;

@@ -3,6 +3,7 @@
 #include <omp.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "multipoles.hpp"
@@ -12,8 +13,8 @@ namespace {
 
 constexpr std::size_t parallel_from = 1024;
 
-/// Sorted, charges that fill space have fewer neighbours than curves that do. Those of a jet have 60
-/// at most.
+/// From so many neighbours on, charges are sorted: sorted charges that fill space have fewer
+/// neighbours than a curve that fills space. The leaves of a jet have at most 60.
 constexpr double worth_sorting = 80;
 
 double mean_neighbours(const ClusterTree& tree) {
@@ -55,8 +56,21 @@ void Clusters::find(ScaledCharges& charges, std::size_t group, std::size_t leaf)
   neighbours = mean_neighbours(found);
 }
 
-// Halves each cluster of the tree across its longest side, level after level: a few charges far away
-// stretch the few clusters that they are in.
+template <class Iterator>
+std::size_t longest_side(Iterator from, Iterator to) {
+  std::size_t longest = 0;
+  double length = -1;
+  for (std::size_t side = 0; side < 3; ++side) {
+    const auto [low, high] = std::minmax_element(
+        from, to, [side](const auto& a, const auto& b) { return a.r[side] < b.r[side]; });
+    if (high->r[side] - low->r[side] > length)
+      longest = side, length = high->r[side] - low->r[side];
+  }
+  return longest;
+}
+
+// Halves each cluster of the tree across its longest side, level after level. A few distant charges
+// then enlarge only the few clusters that contain them.
 void Clusters::sort(const ChargeColumns& c) {
   const std::size_t begin = tree.begin(), n = tree.charges();
   points_.resize(n), order_.resize(n);
@@ -74,21 +88,28 @@ void Clusters::sort(const ChargeColumns& c) {
         return points_.begin() + static_cast<std::ptrdiff_t>(i - begin);
       };
       const auto from = at(cluster.begin), to = at(tree.end_of(cluster));
-      std::size_t longest = 0;
-      double length = -1;
-      for (std::size_t side = 0; side < 3; ++side) {
-        const auto [low, high] =
-            std::minmax_element(from, to, [side](const Point& a, const Point& b) {
-              return a.r[side] < b.r[side];
-            });
-        if (high->r[side] - low->r[side] > length)
-          longest = side, length = high->r[side] - low->r[side];
-      }
+      const std::size_t longest = longest_side(from, to);
       std::ranges::nth_element(from, at(clusters[cluster.child].end), to, {},
                                [&](const Point& p) { return p.r[longest]; });
     }
   }
   for (std::size_t i = 0; i < n; ++i) order_[i] = points_[i].number;
+}
+
+double Crowding::of(const PointCharges& charges) {
+  constexpr std::size_t leaf = 32;
+  charges_.load({&charges, 1}, 1);
+  clusters_.find(charges_, 0, leaf);
+  // Fits to the numbers of neighbours along a whipping jet and in a cube (cost_model.cpp), with an
+  // error of up to a fifth.
+  const auto leaves = static_cast<double>(clusters_.tree.leaves().size());
+  const double on_a_jet = std::clamp(7000 / leaves, 5.0, std::max(leaves, 5.0)),
+               in_a_cloud = std::min(leaves, 45 * std::pow(leaves, 0.25));
+  if (in_a_cloud < 1.3 * on_a_jet)
+    return 0; // nearly all leaves are neighbours of each other
+  return std::clamp(std::log(clusters_.neighbours / on_a_jet)
+                        / std::log(in_a_cloud / on_a_jet),
+                    0.0, 1.0);
 }
 
 } // namespace ehdjet::detail

@@ -7,12 +7,11 @@
 #include <chrono>
 #include <cmath>
 #include <numbers>
-#include <string>
 
 namespace ehdjet {
 namespace {
 
-// Interval of a grid that x is in or next to, and where in it, in logarithms.
+// The interval of a grid that contains x or is nearest to it, and the position in it in logarithms.
 struct Place {
   std::size_t i;
   double part;
@@ -24,20 +23,15 @@ Place place_of(const std::vector<double>& grid, double x) {
 }
 
 struct Trial {
-  std::vector<double> x, y, z, q, fx, fy, fz;
-  explicit Trial(std::size_t n)
-      : q(n, 1e-10)
-      , fx(n)
-      , fy(n)
-      , fz(n) {}
+  std::vector<double> x, y, z;
   void add(double a, double b, double c) { x.push_back(a), y.push_back(b), z.push_back(c); }
 };
 
-// A jet like that of scenes/pvp.toml: straight, then a helix that widens.
+// A jet like that of scenes/pvp.toml: first straight, then a widening helix.
 Trial trial_jet(std::size_t n) {
-  Trial jet(n);
+  Trial jet;
   for (std::size_t i = 0; i < n; ++i) {
-    // Arc length grows about with the square of the parameter.
+    // The arc length is roughly proportional to the square of the parameter.
     const double t = std::sqrt(static_cast<double>(i + 1) / static_cast<double>(n));
     const double wide = std::max(0.0, t - 0.1), angle = 40 * std::numbers::pi * wide;
     jet.add(0.16 * t, 0.044 * wide * std::cos(angle), 0.044 * wide * std::sin(angle));
@@ -45,9 +39,9 @@ Trial trial_jet(std::size_t n) {
   return jet;
 }
 
-// A cube, filled by Kronecker's sequence.
+// A cube filled by a Kronecker sequence.
 Trial trial_cloud(std::size_t n) {
-  Trial cloud(n);
+  Trial cloud;
   const auto part = [](double v) { return v - std::floor(v); };
   for (std::size_t i = 0; i < n; ++i) {
     const auto k = static_cast<double>(i);
@@ -56,23 +50,21 @@ Trial trial_cloud(std::size_t n) {
   return cloud;
 }
 
-double seconds_per_call(CoulombSolver& solver, Trial& c) {
+double seconds_per_call(CoulombSolver& solver, const Trial& c) {
+  const std::size_t n = c.x.size();
+  const std::vector<double> q(n, 1e-10);
+  std::vector<double> fx(n), fy(n), fz(n);
   using Clock = std::chrono::steady_clock;
   double best = 1e300, spent = 0;
   for (int calls = 0; calls < 3 || (spent < 0.02 && calls < 1000); ++calls) {
     const auto start = Clock::now();
-    solver.add_force({{c.x, c.y, c.z}, c.q}, {c.fx, c.fy, c.fz});
+    solver.add_force({{c.x, c.y, c.z}, q}, {fx, fy, fz});
     const double time = std::chrono::duration<double>(Clock::now() - start).count();
     best = std::min(best, time), spent += time;
     if (time > 0.3) break;
   }
   return best;
 }
-
-constexpr std::array<double, 9> grid_charges{250,  500, 1000, 2000, 4000,
-                                             8000, 2e4, 6e4,  2e5};
-constexpr std::array<double, 8> grid_tolerances{1e-12, 1e-10, 1e-8, 1e-6,
-                                                1e-5,  1e-4,  1e-3, 1e-2};
 
 } // namespace
 
@@ -111,23 +103,21 @@ std::size_t CostModel::crossover(double tolerance, double crowding) const {
 
 CostModel CostModel::measured(SimdLevel level) {
   CostModel model;
-  model.charges.assign(grid_charges.begin(), grid_charges.end());
-  model.tolerances.assign(grid_tolerances.begin(), grid_tolerances.end());
   const auto measure = [&](const char* solver, double tolerance, Trial (*make)(std::size_t),
                            std::vector<double>& seconds) {
     const auto timed = make_coulomb_solver(
         SolverOptions{.solver = solver, .tolerance = tolerance, .simd = level});
-    for (const double n : grid_charges) {
-      // Nobody sums 2e5 charges pair by pair: continued from where the sum is quadratic.
+    for (const double n : model.charges) {
+      // The direct sum is quadratic for many charges. Its time is extrapolated.
       const bool known = timed->name() == "direct" && n > 2e4;
-      Trial trial = make(known ? 1 : static_cast<std::size_t>(n));
+      const Trial trial = make(known ? 1 : static_cast<std::size_t>(n));
       seconds.push_back(known ? seconds.back()
-                                    * std::pow(n / grid_charges[seconds.size() - 1], 2)
+                                    * std::pow(n / model.charges[seconds.size() - 1], 2)
                               : seconds_per_call(*timed, trial));
     }
   };
   measure("direct", 1e-6, trial_jet, model.direct);
-  for (const double tolerance : grid_tolerances) {
+  for (const double tolerance : model.tolerances) {
     measure("fmm", tolerance, trial_jet, model.jet);
     measure("fmm", tolerance, trial_cloud, model.cloud);
   }

@@ -1,24 +1,25 @@
-#include "ehdjet/coulomb/direct_sum.hpp"
-
+#include "ehdjet/core/compensated_sum.hpp"
+#include "ehdjet/core/constants.hpp"
 #include "ehdjet/core/error.hpp"
+#include "ehdjet/coulomb/pair_sum.hpp"
 
 #include <omp.h>
 
 #include <algorithm>
+#include <vector>
 
-#include "direct_sum_with.hpp"
-#include "kernels.hpp"
 #include "scaled_charges.hpp"
+#include "solvers.hpp"
 
 namespace ehdjet {
 namespace {
 
 using detail::PairKernel;
 
-/// Below this many beads starting the threads costs more than they save.
+/// For fewer charges, starting the threads takes longer than they save.
 constexpr std::size_t parallel_from = 256;
 
-/// Sources per sweep over the targets: seven columns of them stay in a first-level cache.
+/// Sources per sweep over the targets. Their seven columns fit into the first-level cache.
 constexpr std::size_t block = 512;
 
 class DirectSum final : public CoulombSolver {
@@ -62,7 +63,7 @@ private:
     coincident_pairs_ = charges_.add_close_pairs(force);
   }
 
-  /// The rows of this thread: every `team`-th, so that long and short rows are shared evenly.
+  /// Each thread takes every `team`-th row, so that long and short rows are shared evenly.
   void sum_fields(std::size_t thread, std::size_t team, bool mutual) {
     charges_.clear_field(thread);
     const auto &from = charges_.sources(), &to = charges_.targets();
@@ -81,6 +82,17 @@ private:
 };
 
 } // namespace
+
+double coulomb_energy(ConstVec3View r, std::span<const double> q) {
+  EHDJET_EXPECTS(r.size() == q.size());
+  const std::size_t n = q.size();
+  std::vector<double> potential(n); // at each charge, of the charges before it, without k_C
+#pragma omp parallel for schedule(dynamic, 64) if (n > 512)
+  for (std::size_t i = 0; i < n; ++i) potential[i] = potential_sum(r[i], r, q, 0, i);
+  CompensatedSum energy;
+  for (std::size_t i = 0; i < n; ++i) energy += q[i] * potential[i];
+  return constants::coulomb * energy;
+}
 
 std::unique_ptr<CoulombSolver> detail::make_direct_sum_with(PairKernel kernel) {
   return std::make_unique<DirectSum>(kernel);

@@ -11,7 +11,7 @@
 namespace ehdjet {
 namespace {
 
-/// Fewer pairs than this take less time than waking up threads.
+/// For fewer pairs, starting the threads takes longer than they save.
 constexpr std::size_t parallel_from_pairs = 20000;
 
 struct TargetError {
@@ -38,7 +38,7 @@ double ratio(long double a, long double b) {
 
 CoulombErrorSample sampled_error(const PointCharges& charges, ConstVec3View force,
                                  ToleranceNorm norm, std::size_t max_targets) {
-  const ConstVec3View r = charges.r; // no structured binding: OpenMP could not share it
+  const ConstVec3View r = charges.r; // OpenMP cannot share a structured binding
   const std::span<const double> q = charges.q;
   const std::span<const std::uint8_t> moves = charges.moves;
   const std::size_t n = q.size();
@@ -46,8 +46,8 @@ CoulombErrorSample sampled_error(const PointCharges& charges, ConstVec3View forc
   EHDJET_EXPECTS(force.x.size() == n && force.y.size() == n && force.z.size() == n);
   EHDJET_EXPECTS(max_targets > 0 && (moves.empty() || moves.size() == n));
 
-  std::vector<std::size_t> candidates; // if not all are
   const bool some = norm == ToleranceNorm::moving && !moves.empty();
+  std::vector<std::size_t> candidates; // only if some charges are no targets
   for (std::size_t i = 0; some && i < n; ++i)
     if (moves[i] != 0) candidates.push_back(i);
   const std::size_t among = some ? candidates.size() : n;
@@ -68,7 +68,7 @@ CoulombErrorSample sampled_error(const PointCharges& charges, ConstVec3View forc
     error2 += e.error2, force2 += e.force2;
     if (k < weaker) weaker2 += e.force2;
     const double worst = ratio(std::sqrt(e.error2), e.pair_sum);
-    // a NaN gets in, and then nothing compares as greater
+    // A NaN is taken over and stays, because nothing compares as greater.
     if (worst > sample.worst_per_target || std::isnan(worst))
       sample.worst_per_target = worst;
   }

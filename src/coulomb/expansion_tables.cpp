@@ -13,13 +13,13 @@ Real factorial(int n) {
   return n < 2 ? 1 : static_cast<Real>(n) * factorial(n - 1);
 }
 
-// What turns plain harmonics (r^l P_l^m e^(im phi)/(l+m)!) into normalised ones.
+// Factor from plain harmonics (r^l P_l^m e^(im phi)/(l+m)!) to normalised ones.
 Real norm(int l, int m) {
   return std::sqrt(factorial(l - m) * factorial(l + m));
 }
 
-/// How plain harmonics of degree l look in axes with x and z exchanged:
-/// S R_l^m = sum_n B_l[m][n] R_l^n, by recursion in l from derivatives of both sides.
+/// Plain harmonics of degree l in axes with x and z exchanged: S R_l^m = sum_n B_l[m][n] R_l^n. The
+/// recursion in l follows from the derivatives of both sides.
 class Exchange {
 public:
   explicit Exchange(int l)
@@ -38,7 +38,7 @@ public:
     }
     return up;
   }
-  Real operator()(int m, int n) const { // 0 beyond the matrix
+  Real operator()(int m, int n) const { // 0 outside the matrix
     if (std::abs(m) > l_ || std::abs(n) > l_) return 0;
     return b_[index(m, n)];
   }
@@ -48,9 +48,8 @@ public:
 
 private:
   [[nodiscard]] std::size_t index(int m, int n) const {
-    const auto row = static_cast<std::size_t>(m + l_),
-               column = static_cast<std::size_t>(n + l_);
-    return row * (2 * static_cast<std::size_t>(l_) + 1) + column;
+    const int place = (m + l_) * (2 * l_ + 1) + n + l_;
+    return static_cast<std::size_t>(place);
   }
   Real& at(int m, int n) { return b_[index(m, n)]; }
   int l_;
@@ -71,8 +70,25 @@ ExpansionTables::ExpansionTables(int p)
     : order_(p) {
   EHDJET_EXPECTS(p >= 1 && p <= highest_order);
   fill_swap();
-  fill_shifts();
-  fill_recursions();
+  for (int m = 0; m <= p; ++m)
+    for (int k = m; k <= p; ++k)
+      for (int l = m; l <= p; ++l)
+        push(multipole_to_local_, factorial(l + k) / (norm(k, m) * norm(l, m)));
+  for (int m = 0; m <= p; ++m)
+    for (int l = m; l <= p; ++l)
+      for (int j = m; j <= l; ++j) push(shift_, norm(l, m) / norm(j, m) / factorial(l - j));
+  for (int m = 0; m <= p + 1; ++m)
+    for (int l = m + 1; l <= p + 1; ++l) {
+      const Real d = static_cast<Real>(l + m) * (l - m);
+      push(upward_, (2 * l - 1) / d * norm(l, m) / norm(l - 1, m));
+      push(upward_, l - 2 < m ? 0 : -norm(l, m) / norm(l - 2, m) / d);
+    }
+  push(diagonal_, 1);
+  for (int m = 1; m <= p + 1; ++m)
+    push(diagonal_, -norm(m, m) / norm(m - 1, m - 1) / (2 * m));
+  for (int l = 0; l <= p; ++l)
+    for (int m = 0; m <= l; ++m)
+      for (const int n : {m, m - 1, m + 1}) push(gradient_, norm(l + 1, n) / norm(l, m));
 }
 
 void ExpansionTables::fill_swap() {
@@ -87,33 +103,6 @@ void ExpansionTables::fill_swap() {
         push(swap_, s.normalised(m, n) - parity(n) * s.normalised(m, -n));
     }
   }
-}
-
-void ExpansionTables::fill_shifts() {
-  const int p = order_;
-  for (int m = 0; m <= p; ++m)
-    for (int k = m; k <= p; ++k)
-      for (int l = m; l <= p; ++l)
-        push(multipole_to_local_, factorial(l + k) / (norm(k, m) * norm(l, m)));
-  for (int m = 0; m <= p; ++m)
-    for (int l = m; l <= p; ++l)
-      for (int j = m; j <= l; ++j) push(shift_, norm(l, m) / norm(j, m) / factorial(l - j));
-}
-
-void ExpansionTables::fill_recursions() {
-  const int p = order_;
-  for (int m = 0; m <= p + 1; ++m)
-    for (int l = m + 1; l <= p + 1; ++l) {
-      const Real d = static_cast<Real>(l + m) * (l - m);
-      push(upward_, (2 * l - 1) / d * norm(l, m) / norm(l - 1, m));
-      push(upward_, l - 2 < m ? 0 : -norm(l, m) / norm(l - 2, m) / d);
-    }
-  push(diagonal_, 1);
-  for (int m = 1; m <= p + 1; ++m)
-    push(diagonal_, -norm(m, m) / norm(m - 1, m - 1) / (2 * m));
-  for (int l = 0; l <= p; ++l)
-    for (int m = 0; m <= l; ++m)
-      for (const int n : {m, m - 1, m + 1}) push(gradient_, norm(l + 1, n) / norm(l, m));
 }
 
 ExpansionNumbers ExpansionTables::numbers() const {

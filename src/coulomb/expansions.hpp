@@ -2,23 +2,18 @@
 
 #include <cstddef>
 
-#include "expansion_kernel.hpp"
+#include "kernels.hpp"
+#include "pair_tiles.hpp"
 
-// The expansion operators for any vector width, included by one source file per instruction set. As
-// in pair_tiles.hpp, all of it has internal linkage and uses no standard function.
+// The expansion operators for any vector width, with the same rules as in pair_tiles.hpp.
 //
-// Operators along an arbitrary direction d turn the axes so that d becomes the z axis, where they
-// are sums over the degree only, O(p^3) in all: about z until x = 0, exchange x and z, about z
-// until y = 0, exchange x and z (Dehnen 2014).
+// For an operator along a direction d, the axes are turned until d is the z axis. Along z the
+// operators are sums over the degree only, so that the total cost is O(p^3). The steps are: turn
+// about z until x = 0, exchange x and z, turn about z until y = 0, exchange x and z (Dehnen 2014).
 namespace ehdjet::detail {
 namespace {
 
-#define EHDJET_INLINE [[gnu::always_inline]] inline
-
 inline constexpr int most_coefficients = (highest_order + 2) * (highest_order + 2);
-
-template <class Simd>
-using VectorOf = typename Simd::Vector;
 
 constexpr int re(int l, int m) {
   return l * l + (m == 0 ? 0 : 2 * m - 1);
@@ -36,7 +31,7 @@ EHDJET_INLINE VectorOf<Simd> square_root(const VectorOf<Simd>& v) {
   return root;
 }
 
-/// The same coefficients of one or two clusters per lane.
+/// The coefficients of one or two clusters per lane.
 template <class Simd, int streams>
 struct Sets {
   VectorOf<Simd> c[streams][most_coefficients];
@@ -54,7 +49,7 @@ struct Angles { // cos(m gamma), sin(m gamma)
   }
 };
 
-/// Axes turned about z by gamma (sign 1) or back (-1).
+/// Turns the axes about z by gamma (sign 1) or back (-1).
 template <class Simd, int streams, int sign>
 EHDJET_INLINE void turn(int p, const Angles<Simd>& a, Sets<Simd, streams>& set) {
   using Vector = VectorOf<Simd>;
@@ -69,7 +64,7 @@ EHDJET_INLINE void turn(int p, const Angles<Simd>& a, Sets<Simd, streams>& set) 
       }
 }
 
-/// x and z axes exchanged.
+/// Exchanges the x and z axes.
 template <class Simd, int streams>
 EHDJET_INLINE void exchange_axes(const ExpansionNumbers& tables,
                                  const Sets<Simd, streams>& in, Sets<Simd, streams>& out) {
@@ -77,32 +72,31 @@ EHDJET_INLINE void exchange_axes(const ExpansionNumbers& tables,
   const double* t = tables.swap;
   for (int l = 0; l <= tables.order; ++l)
     for (int m = 0; m <= l; ++m) {
-      Vector sum[streams] = {};
-      for (int n = (l - m) % 2; n <= l; n += 2, ++t)
-        for (int k = 0; k < streams; ++k) sum[k] += *t * in.c[k][re(l, n)];
-      for (int k = 0; k < streams; ++k) out.c[k][re(l, m)] = sum[k];
-      if (m == 0) continue;
-      Vector odd[streams] = {};
-      for (int n = 1 + (l - m) % 2; n <= l; n += 2, ++t)
-        for (int k = 0; k < streams; ++k) odd[k] += *t * in.c[k][re(l, n) + 1];
-      for (int k = 0; k < streams; ++k) out.c[k][re(l, m) + 1] = odd[k];
+      const auto exchange = [&](int part) __attribute__((always_inline)) { // Re or Im
+        Vector sum[streams] = {};
+        for (int n = part + (l - m) % 2; n <= l; n += 2, ++t)
+          for (int k = 0; k < streams; ++k) sum[k] += *t * in.c[k][re(l, n) + part];
+        for (int k = 0; k < streams; ++k) out.c[k][re(l, m) + part] = sum[k];
+      };
+      exchange(0);
+      if (m > 0) exchange(1);
     }
 }
 
-/// Turns axes so that d points along z, and back.
+/// Turns the axes so that d points along z, and back.
 template <class Simd>
 struct Alignment {
   using Vector = VectorOf<Simd>;
   Vector length;
   Angles<Simd> azimuth, polar;
 
-  EHDJET_INLINE static Vector load(const double* p) {
+  EHDJET_INLINE static Vector load_unaligned(const double* p) {
     Vector v;
     for (int lane = 0; lane < Simd::lanes; ++lane) v[lane] = p[lane];
     return v;
   }
   EHDJET_INLINE Alignment(int p, const ExpansionKernel::Batch& b)
-      : Alignment(p, load(b.dx), load(b.dy), load(b.dz)) {}
+      : Alignment(p, load_unaligned(b.dx), load_unaligned(b.dy), load_unaligned(b.dz)) {}
   EHDJET_INLINE Alignment(int p, const Vector& x, const Vector& y, const Vector& z)
       : Alignment(p, x, y, z, square_root<Simd>(x * x + y * y)) {}
   EHDJET_INLINE Alignment(int p, const Vector& x, const Vector& y, const Vector& z,
@@ -139,7 +133,7 @@ EHDJET_INLINE void gather(int n, const ExpansionKernel::Batch& b,
       for (int lane = 0; lane < Simd::lanes; ++lane) set.c[k][i][lane] = b.from[k][lane][i];
 }
 
-/// Lane after lane: clusters may occur more than once in a batch.
+/// The lanes are added one after the other, because a cluster may occur several times in a batch.
 template <class Simd>
 EHDJET_INLINE void scatter(int n, const VectorOf<Simd>* set, double* const* to) {
   for (int lane = 0; lane < Simd::lanes; ++lane) {
@@ -148,15 +142,16 @@ EHDJET_INLINE void scatter(int n, const VectorOf<Simd>* set, double* const* to) 
   }
 }
 
-/// Along z, at distance d:  L_k^m = (-1)^m/d^(k+1) sum_(l<p) (-1)^k/d^l u_kl^m M_l^m,  u the table
-/// `multipole_to_local`; the sign (-1)^k belongs to the first cluster's field on the second, and
-/// turns into (-1)^l for the second's on the first, which is seen along -z.
+/// Along z, at distance d:  L_k^m = (-1)^m/d^(k+1) sum_(l<p) (-1)^k/d^l u_kl^m M_l^m,  where u is
+/// the table `multipole_to_local`. The sign (-1)^k holds for the field of the first cluster at the
+/// second. It becomes (-1)^l for the opposite direction, which is along -z.
 ///
-/// Multipoles up to degree p-1, local expansions up to p: a force takes a derivative of the local
-/// expansion, so that it is made of products of degrees up to p-1 of either side, the same on
-/// both. That makes the sum of the forces vanish; multipoles of degree p would spoil it and add
-/// nothing to the order of the force.
+/// The multipoles have degrees up to p-1, the local expansions up to p. A force is a derivative of
+/// the local expansion. It therefore contains products of degrees up to p-1 on both sides, and the
+/// sum of the forces vanishes. Multipoles of degree p would violate this, and would not increase the
+/// order of the force.
 template <class Simd>
+// One function, whose sets of coefficients stay where they are. NOLINTNEXTLINE(readability-function-size)
 void multipoles_to_locals(const ExpansionNumbers& t, const ExpansionKernel::Batch& batch) {
   using Vector = VectorOf<Simd>;
   const int p = t.order, n = (p + 1) * (p + 1);
@@ -165,8 +160,8 @@ void multipoles_to_locals(const ExpansionNumbers& t, const ExpansionKernel::Batc
   const Alignment<Simd> axes(p, batch);
   axes.align(t, a, b);
 
-  // Scaled with the distance, so that no power of it overflows. The multipole of the second
-  // cluster is seen along -z.
+  // The coefficients are scaled with the distance, so that no power of it overflows. The direction
+  // for the multipole of the second cluster is -z.
   const Vector inverse = 1.0 / axes.length;
   Vector scale[highest_order + 1];
   scale[0] = broadcast<Vector>(1);
@@ -181,7 +176,7 @@ void multipoles_to_locals(const ExpansionNumbers& t, const ExpansionKernel::Batc
     for (int k = m; k <= p; ++k) {
       Vector real[2] = {}, imaginary[2] = {};
       for (int l = m; l <= p; ++l, ++u) {
-        if (l == p) continue; // see below
+        if (l == p) continue; // see above
         const int i = re(l, m);
         for (int side = 0; side < 2; ++side) {
           real[side] += *u * a.c[side][i];
@@ -202,7 +197,8 @@ void multipoles_to_locals(const ExpansionNumbers& t, const ExpansionKernel::Batc
   scatter<Simd>(n, b.c[1], batch.to[1]);
 }
 
-/// Along z: M'_l = sum_j s^(l-j) w_lj M_j of multipoles, L'_j = sum_l s^(l-j) w_lj L_l of locals.
+/// Along z: M'_l = sum_j s^(l-j) w_lj M_j for multipoles, L'_j = sum_l s^(l-j) w_lj L_l for local
+/// expansions.
 template <class Simd, bool multipoles>
 void shift(const ExpansionNumbers& t, const ExpansionKernel::Batch& batch) {
   using Vector = VectorOf<Simd>;
@@ -213,7 +209,7 @@ void shift(const ExpansionNumbers& t, const ExpansionKernel::Batch& batch) {
   axes.align(t, a, b);
   Vector power[highest_order + 1];
   power[0] = broadcast<Vector>(1);
-  // A multipole about the new centre sees the old one from there: along -d.
+  // For a multipole the shift is the vector from the new to the old centre, -d.
   const Vector s = multipoles ? -axes.length : axes.length;
   for (int l = 1; l <= p; ++l) power[l] = power[l - 1] * s;
   for (int i = 0; i < n; ++i) b.c[0][i] = Vector{};
@@ -231,7 +227,7 @@ void shift(const ExpansionNumbers& t, const ExpansionKernel::Batch& batch) {
   scatter<Simd>(n, b.c[0], batch.to[0]);
 }
 
-/// R_l^m of one vector of charges, l <= p.
+/// R_l^m for l <= p, for one vector of charges.
 template <class Simd>
 EHDJET_INLINE void harmonics(const ExpansionNumbers& t, int p, const VectorOf<Simd>& x,
                              const VectorOf<Simd>& y, const VectorOf<Simd>& z,
@@ -260,16 +256,19 @@ EHDJET_INLINE void harmonics(const ExpansionNumbers& t, int p, const VectorOf<Si
       second_i = below_i, below_i = next_i;
       r[re(l, m) + 1] = next_i;
     }
-    up += 2 * (t.order + 1 - p);
+    up += std::ptrdiff_t{2} * (t.order + 1 - p);
   }
 }
 
+/// Coordinates of one vector of charges, relative to the centre of an expansion.
 template <class Simd>
-EHDJET_INLINE VectorOf<Simd> unit_coordinate(const double* column, std::size_t i,
-                                             double centre) {
-  return *reinterpret_cast<const VectorOf<Simd>*>(column + i) * ExpansionKernel::unit
-         - centre;
-}
+struct Positions {
+  VectorOf<Simd> x, y, z;
+  EHDJET_INLINE Positions(const ChargeColumns& c, std::size_t i, const double* centre)
+      : x(load<Simd>(c.x + i) * ExpansionKernel::unit - centre[0])
+      , y(load<Simd>(c.y + i) * ExpansionKernel::unit - centre[1])
+      , z(load<Simd>(c.z + i) * ExpansionKernel::unit - centre[2]) {}
+};
 
 template <class Simd>
 void charges_to_multipole(const ExpansionNumbers& t, const ChargeColumns& c,
@@ -280,12 +279,11 @@ void charges_to_multipole(const ExpansionNumbers& t, const ChargeColumns& c,
   Vector sum[most_coefficients], r[most_coefficients];
   for (int k = 0; k < n; ++k) sum[k] = Vector{};
   for (std::size_t i = begin; i < end; i += Simd::lanes) {
-    Vector q = *reinterpret_cast<const Vector*>(c.q + i);
-    Vector x = unit_coordinate<Simd>(c.x, i, centre[0]),
-           y = unit_coordinate<Simd>(c.y, i, centre[1]),
-           z = unit_coordinate<Simd>(c.z, i, centre[2]);
+    Vector q = load<Simd>(c.q + i);
+    auto [x, y, z] = Positions<Simd>(c, i, centre);
     for (int lane = 0; lane < Simd::lanes; ++lane)
-      if (i + static_cast<std::size_t>(lane) >= end) // padding is far away
+      if (i + static_cast<std::size_t>(lane)
+          >= end) // padding, or charges of another cluster
         q[lane] = x[lane] = y[lane] = z[lane] = 0;
     harmonics<Simd>(t, t.order, x, y, z, r);
     for (int k = 0; k < n; ++k) sum[k] += q * r[k];
@@ -297,8 +295,20 @@ void charges_to_multipole(const ExpansionNumbers& t, const ChargeColumns& c,
   }
 }
 
-/// -gradient of sum conj(R_l^m) L_l^m, from the derivatives of the harmonics: each component is a
-/// sum of real numbers times the Re and Im of R_l^m, l < p.
+/// Adds  factor sum_k (gx, gy, gz)_k r_k  to the field of one vector of charges.
+template <class Simd>
+EHDJET_INLINE void add_field(int n, const double* gx, const double* gy, const double* gz,
+                             const VectorOf<Simd>* r, const VectorOf<Simd>& factor,
+                             FieldColumns g, std::size_t i) {
+  VectorOf<Simd> x{}, y{}, z{};
+  for (int k = 0; k < n; ++k) x += gx[k] * r[k], y += gy[k] * r[k], z += gz[k] * r[k];
+  store<Simd>(g.x + i, load<Simd>(g.x + i) + factor * x);
+  store<Simd>(g.y + i, load<Simd>(g.y + i) + factor * y);
+  store<Simd>(g.z + i, load<Simd>(g.z + i) + factor * z);
+}
+
+/// -gradient of sum conj(R_l^m) L_l^m, from the derivatives of the harmonics. Each component is a
+/// sum of real numbers times Re and Im of R_l^m, l < p.
 template <class Simd>
 void local_to_charges(const ExpansionNumbers& t, const ChargeColumns& c, FieldColumns g,
                       std::size_t begin, std::size_t end, const double* centre,
@@ -322,19 +332,13 @@ void local_to_charges(const ExpansionNumbers& t, const ChargeColumns& c, FieldCo
       gy[i] = -(a2 + b2), gy[i + 1] = a1 + b1;
       gz[i] = 2 * f[0] * same[0], gz[i + 1] = 2 * f[0] * same[1];
     }
-  // The columns' coordinates are larger by 1/unit: fields smaller by unit^2.
+  // The coordinates of the columns are larger by 1/unit, and fields are smaller by unit^2.
   constexpr double scale = -ExpansionKernel::unit * ExpansionKernel::unit;
   Vector r[most_coefficients];
   for (std::size_t i = begin; i < end; i += Simd::lanes) {
-    const Vector x = unit_coordinate<Simd>(c.x, i, centre[0]),
-                 y = unit_coordinate<Simd>(c.y, i, centre[1]),
-                 z = unit_coordinate<Simd>(c.z, i, centre[2]);
+    const auto [x, y, z] = Positions<Simd>(c, i, centre);
     harmonics<Simd>(t, p - 1, x, y, z, r);
-    Vector sx = Vector{}, sy = Vector{}, sz = Vector{};
-    for (int k = 0; k < n; ++k) sx += gx[k] * r[k], sy += gy[k] * r[k], sz += gz[k] * r[k];
-    *reinterpret_cast<Vector*>(g.x + i) += scale * sx;
-    *reinterpret_cast<Vector*>(g.y + i) += scale * sy;
-    *reinterpret_cast<Vector*>(g.z + i) += scale * sz;
+    add_field<Simd>(n, gx, gy, gz, r, broadcast<Vector>(scale), g, i);
   }
 }
 
@@ -374,17 +378,10 @@ void multipole_to_charges(const ExpansionNumbers& t, const ChargeColumns& c, Fie
   constexpr double scale = -ExpansionKernel::unit * ExpansionKernel::unit;
   Vector r[most_coefficients];
   for (std::size_t i = begin; i < end; i += Simd::lanes) {
-    const Vector x = unit_coordinate<Simd>(c.x, i, centre[0]),
-                 y = unit_coordinate<Simd>(c.y, i, centre[1]),
-                 z = unit_coordinate<Simd>(c.z, i, centre[2]);
+    const auto [x, y, z] = Positions<Simd>(c, i, centre);
     const Vector inverse = 1.0 / (x * x + y * y + z * z); // R_l(d/d^2)/d = R_l(d)/d^(2l+1)
     harmonics<Simd>(t, p + 1, x * inverse, y * inverse, z * inverse, r);
-    Vector sx = Vector{}, sy = Vector{}, sz = Vector{};
-    for (int k = 0; k < n; ++k) sx += gx[k] * r[k], sy += gy[k] * r[k], sz += gz[k] * r[k];
-    const Vector factor = scale * square_root<Simd>(inverse);
-    *reinterpret_cast<Vector*>(g.x + i) += factor * sx;
-    *reinterpret_cast<Vector*>(g.y + i) += factor * sy;
-    *reinterpret_cast<Vector*>(g.z + i) += factor * sz;
+    add_field<Simd>(n, gx, gy, gz, r, scale * square_root<Simd>(inverse), g, i);
   }
 }
 
@@ -402,15 +399,12 @@ double energy_in_multipole(const ExpansionNumbers& t, const ChargeColumns& c,
       weighted[i] = (i == re(l, 0) ? 1 : 2) * multipole[i];
   Vector sum = Vector{}, r[most_coefficients];
   for (std::size_t i = begin; i < end; i += Simd::lanes) {
-    const Vector x = unit_coordinate<Simd>(c.x, i, centre[0]),
-                 y = unit_coordinate<Simd>(c.y, i, centre[1]),
-                 z = unit_coordinate<Simd>(c.z, i, centre[2]);
+    const auto [x, y, z] = Positions<Simd>(c, i, centre);
     const Vector inverse = 1.0 / (x * x + y * y + z * z);
     harmonics<Simd>(t, p, x * inverse, y * inverse, z * inverse, r);
     Vector potential = Vector{};
     for (int k = 0; k < re(p + 1, 0); ++k) potential += weighted[k] * r[k];
-    sum +=
-        *reinterpret_cast<const Vector*>(c.q + i) * square_root<Simd>(inverse) * potential;
+    sum += load<Simd>(c.q + i) * square_root<Simd>(inverse) * potential;
   }
   double total = 0;
   for (int lane = 0; lane < Simd::lanes; ++lane) total += sum[lane];
@@ -429,8 +423,6 @@ ExpansionKernel expansion_kernel() {
           multipole_to_charges<Simd>,
           energy_in_multipole<Simd>};
 }
-
-#undef EHDJET_INLINE
 
 } // namespace
 } // namespace ehdjet::detail

@@ -13,31 +13,31 @@
 
 namespace ehdjet::detail {
 
-/// Clusters of sources and of targets, ready to act on each other.
+/// Clusters of sources and of targets, with their multipoles.
 struct ClusterProblem {
   const PairKernel& pairs;
   const Expansions& expansions;
   ScaledCharges& charges;
-  const ClusterTree &sources, &targets; ///< the same tree: they act on each other
+  const ClusterTree &sources, &targets; ///< the same tree if the charges act on each other
   const Multipoles& multipoles;         ///< of the sources
   const Acceptance& acceptance;
 
   [[nodiscard]] bool is_mutual() const { return &sources == &targets; }
 };
 
-/// Treecode or fast multipole method: which clusters act on which, and how.
+/// The treecode or the fast multipole method.
 class FarField {
 public:
   virtual ~FarField() = default;
   [[nodiscard]] virtual std::string_view name() const = 0;
-  /// Allocates what the problem needs.
+  /// Allocates the memory for a problem.
   virtual void reserve(const ClusterProblem& problem, std::size_t threads) = 0;
-  /// Fields of all targets, into `charges.field(...)` of one or all threads, which is clear. Called
-  /// by every thread of the team.
+  /// Adds the fields of all targets to `charges.field(...)` of one or all threads. Every thread of
+  /// the team must call it.
   virtual void act(const ClusterProblem& problem, std::size_t thread, std::size_t team) = 0;
   /// Whether the last call has left out clusters at one place, all pairs of which are coincident.
   [[nodiscard]] virtual bool met_coincident() const = 0;
-  /// Pairs of charges that the last call has summed one by one.
+  /// Number of pairs of charges that the last call has summed one by one.
   [[nodiscard]] virtual std::uint64_t near_pairs() const = 0;
 };
 

@@ -8,8 +8,8 @@
 namespace ehdjet::detail {
 namespace {
 
-/// Mutual dual-tree traversal: both clusters of a pair act on each other, so that forces add up to
-/// zero, to the rounding of the expansions.
+/// Mutual dual-tree traversal: both clusters of a pair act on each other. The sum of all forces is
+/// therefore zero within the rounding of the expansions.
 ///
 /// cost   : O(n); memory: two coefficient sets per cluster, one more per further thread
 /// source : Dehnen, Comput. Astrophys. Cosmol. 1 (2014) 1
@@ -25,8 +25,8 @@ public:
     const std::size_t from = p.sources.clusters().size(), to = p.targets.clusters().size();
     const std::size_t numbers = p.expansions.set * to * threads;
     if (locals_.size() < numbers) locals_.resize(numbers);
-    // Lists depend on the places, too: room for more pairs than a jet ever has, or for all there
-    // are. What is never written takes no memory.
+    // The length of the lists depends on the positions. The reserve is larger than for any jet, or
+    // the number of all pairs. Memory that is never written costs nothing.
     const auto room = [](std::size_t a, std::size_t b) {
       return std::min(a * (b + 1), 32 * std::max(a, b));
     };
@@ -50,8 +50,8 @@ public:
 
 private:
   using Pair = std::pair<std::uint32_t, std::uint32_t>; ///< target and source
-  /// Pairs of clusters that act by their expansions, and of leaves that act charge by charge. A
-  /// cluster and itself is a pair, too.
+  /// Pairs of clusters that act by their expansions (far), and pairs of leaves that act charge by
+  /// charge (near). A leaf also forms a pair with itself.
   struct Lists {
     std::vector<Pair> far, near;
     bool coincident = false;
@@ -68,7 +68,7 @@ private:
 #pragma omp single
     share_out(p, team);
     Lists& lists = lists_[thread];
-    if (thread > 0) lists.clear(); // the first has what was known before
+    if (thread > 0) lists.clear(); // share_out has filled the lists of thread 0
     for (std::size_t k = thread; k < open_.size(); k += team) visit(p, open_[k], lists);
 #pragma omp barrier
 #pragma omp single
@@ -83,8 +83,7 @@ private:
     }
   }
 
-  // The top of the traversal, until there are enough pairs for all threads to be about equally
-  // busy.
+  // The top of the traversal. It ends when there are enough pairs to share them evenly.
   void share_out(const ClusterProblem& p, std::size_t team) {
     constexpr std::size_t pairs_per_thread = 256;
     Lists& lists = lists_[0];
@@ -102,15 +101,16 @@ private:
     open(p, pair, lists, [&](const Pair& next) { visit(p, next, lists); });
   }
 
-  /// Lists a pair, or hands on the pairs that it is made of. If charges act on each other, the
-  /// first cluster is not behind the second.
+  /// Lists a pair, or calls `next` for the pairs into which it is split. If the charges act on each
+  /// other, the first cluster never comes after the second.
   template <class Next>
   static void open(const ClusterProblem& p, const Pair& pair, Lists& lists,
                    const Next& next) {
     const auto [a, b] = pair;
     const Cluster &c = p.targets.clusters()[a], &d = p.sources.clusters()[b];
     const bool mutual = p.is_mutual();
-    if (mutual && a == b && c.is_leaf()) {
+    // Two cases are near pairs, but the order of the questions matters.
+    if (mutual && a == b && c.is_leaf()) { // NOLINT(bugprone-branch-clone)
       lists.near.push_back(pair);
     } else if (in_one_place(c, d)) {
       lists.coincident = true;
@@ -128,11 +128,11 @@ private:
     }
   }
 
-  // A leaf's near leaves mostly follow each other: one sweep of the kernel over all of them, which
-  // pays for the loading and the adding up of its targets once.
+  // The near leaves of a leaf are mostly successive. One sweep of the kernel over all of them loads
+  // the targets and adds up their fields only once.
   void merge_near(const ClusterProblem& p, std::size_t team) {
     const auto rank = [&p](const Pair& pair) { return p.targets.rank(pair.first); };
-    first_.assign(p.targets.leaves().size() + 1, 0); // of each leaf's entries, by counting
+    first_.assign(p.targets.leaves().size() + 1, 0); // a counting sort by target leaves
     const std::span<const Lists> lists(lists_.data(), team);
     for (const Lists& l : lists)
       for (const Pair& pair : l.near) ++first_[rank(pair) + 1];
@@ -146,7 +146,6 @@ private:
     for (std::size_t k = 0; k < near_.size();) {
       std::size_t end = k;
       while (end < near_.size() && near_[end].first == near_[k].first) ++end;
-      // Few, and nearly in order: the number of a leaf grows along the jet within a level.
       std::ranges::sort(near_.begin() + static_cast<std::ptrdiff_t>(k),
                         near_.begin() + static_cast<std::ptrdiff_t>(end), {},
                         [&](const Pair& pair) { return p.sources.rank(pair.second); });
@@ -175,7 +174,7 @@ private:
       ExpansionKernel::Batch batch = idle_batch();
       for (std::size_t lane = 0; lane < lanes && k * lanes + lane < far_.size(); ++lane) {
         const auto [a, b] = far_[k * lanes + lane];
-        const bool mutual = p.is_mutual(); // or a acts on nobody, and nobody on b
+        const bool mutual = p.is_mutual(); // otherwise only b acts on a
         set_lane(batch, lane, mutual ? p.multipoles[a] : batch.from[0][lane],
                  local(p, thread, a), between(targets[a].centre, sources[b].centre));
         batch.from[1][lane] = p.multipoles[b];
@@ -188,8 +187,8 @@ private:
   void act_near(const ClusterProblem& p, std::size_t thread, std::size_t team) {
     const auto add = p.is_mutual() ? p.pairs.add_fields : p.pairs.add_fields_one_way;
     const std::uint64_t total = near_pairs();
-    // Shares of equal cost. The sweeps of one leaf stay together: they report close pairs in the
-    // same places.
+    // Each thread gets a share of equal cost. The sweeps of one leaf stay together, because they set
+    // the same flags of close pairs.
     const auto at_cost = [&](std::uint64_t cost) {
       auto s = std::ranges::lower_bound(sweeps_, cost, {}, &Sweep::cost_so_far);
       while (s != sweeps_.begin() && s != sweeps_.end()
@@ -203,7 +202,8 @@ private:
       add(p.charges.columns(), p.charges.field(thread), s->rows, p.charges.close());
   }
 
-  // Sums of the threads' locals, children from their parents, charges from their leaves.
+  // Adds up the local expansions of all threads, and passes them from parents to children and from
+  // leaves to charges.
   void gather_locals(const ClusterProblem& p, std::size_t team) {
     const auto clusters = p.targets.clusters();
     const std::size_t numbers = p.expansions.set * clusters.size();
@@ -224,14 +224,14 @@ private:
     }
   }
 
-  /// Charges of a leaf against those of leaves that follow each other.
+  /// The charges of a leaf and those of successive source leaves.
   struct Sweep {
     TileRows rows;
-    std::uint64_t cost_so_far; ///< pairs, up to and with this one
+    std::uint64_t cost_so_far; ///< number of pairs of charges, including this sweep
   };
-  std::vector<Lists> lists_;        ///< of each thread
-  std::vector<Pair> open_, opened_; ///< pairs that are yet to be visited
-  std::vector<Pair> far_, near_;    ///< of all threads; near pairs by their first leaf
+  std::vector<Lists> lists_;        ///< one per thread
+  std::vector<Pair> open_, opened_; ///< pairs that have not been visited yet
+  std::vector<Pair> far_, near_; ///< of all threads; near pairs are sorted by target leaves
   std::vector<std::size_t> first_;
   std::vector<Sweep> sweeps_;
   std::vector<double> locals_;

@@ -1,6 +1,7 @@
 #include "kernels.hpp"
 
 #include "ehdjet/core/error.hpp"
+#include "ehdjet/coulomb/simd_level.hpp"
 
 namespace ehdjet {
 
@@ -16,24 +17,17 @@ SimdLevel best_simd_level() {
 }
 
 std::string_view name_of(SimdLevel level) {
-  switch (level) {
-  case SimdLevel::avx512:
-    return "avx512";
-  case SimdLevel::avx2:
-    return "avx2";
-  case SimdLevel::portable:
-    break;
-  }
-  return "portable";
+  constexpr std::array<std::string_view, 3> names{"portable", "avx2", "avx512"};
+  return names[static_cast<std::size_t>(level)];
 }
 
 detail::Kernels detail::kernels_of(SimdLevel level) {
   EHDJET_EXPECTS(level <= best_simd_level());
 #if defined(__x86_64__)
-  if (level == SimdLevel::avx512) return {avx512_pair_kernel(), avx512_expansion_kernel()};
-  if (level == SimdLevel::avx2) return {avx2_pair_kernel(), avx2_expansion_kernel()};
+  if (level == SimdLevel::avx512) return avx512_kernels();
+  if (level == SimdLevel::avx2) return avx2_kernels();
 #endif
-  return {portable_pair_kernel(), portable_expansion_kernel()};
+  return portable_kernels();
 }
 
 } // namespace ehdjet

@@ -1,26 +1,21 @@
 #include "ehdjet/coulomb/make_solver.hpp"
 
 #include "ehdjet/core/error.hpp"
-#include "ehdjet/coulomb/direct_sum.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <fmt/format.h>
-#include <iterator>
 #include <string>
 
-#include "auto_solver.hpp"
-#include "checked_solver.hpp"
-#include "cluster_solver.hpp"
+#include "solvers.hpp"
 
 namespace ehdjet {
 namespace {
 
 using detail::ClusterParameters;
 
-// Tighter tolerances are below what expansions and the direct sum itself can keep: forces on a
-// smooth curve are small residues.
+// Round-off limits the tolerance, also that of the direct sum, because forces on a smooth curve
+// nearly cancel.
 constexpr double tightest = 1e-13, loosest = 0.1;
 
 void check(const SolverOptions& o) {
@@ -38,7 +33,7 @@ void check(const SolverOptions& o) {
     refuse(fmt::format("leaf {}: must be a multiple of {}", *o.leaf, detail::padding));
 }
 
-/// Order and leaf that cost least for a tolerance (bench/coulomb_bench).
+/// The order and leaf size with the lowest cost for a tolerance (bench/coulomb_bench).
 ClusterParameters parameters(const SolverOptions& o, double extra_order,
                              std::size_t coarse_leaf, std::size_t fine_leaf) {
   check(o);
@@ -51,26 +46,21 @@ ClusterParameters parameters(const SolverOptions& o, double extra_order,
           .opening = o.opening.value_or(ClusterParameters{}.opening)};
 }
 
-struct KnownSolver {
-  SolverDescription about;
-  std::unique_ptr<CoulombSolver> (*make)(const SolverOptions&);
-};
-
-constexpr KnownSolver known[] = {
-    {{"direct", "every pair, O(n^2): exact to round-off"},
+constexpr SolverDescription known[] = {
+    {"direct", "every pair, O(n^2): exact to round-off",
      [](const SolverOptions& o) { return make_direct_sum(o.simd); }},
-    {{"treecode", "Barnes-Hut with multipoles, O(n log n), within a tolerance"},
+    {"treecode", "Barnes-Hut with multipoles, O(n log n), within a tolerance",
      [](const SolverOptions& o) {
        return detail::make_cluster_solver(
            detail::kernels_of(o.simd), parameters(o, 0.3, 64, 64), detail::make_treecode());
      }},
-    {{"fmm", "fast multipole method, O(n), within a tolerance"},
+    {"fmm", "fast multipole method, O(n), within a tolerance",
      [](const SolverOptions& o) {
        return detail::make_cluster_solver(detail::kernels_of(o.simd),
                                           parameters(o, 0.6, 32, 64),
                                           detail::make_fast_multipole());
      }},
-    {{"auto", "direct or fmm, whichever is cheaper for the present charges"},
+    {"auto", "direct or fmm, whichever is cheaper for the present charges",
      [](const SolverOptions& o) {
        check(o);
        return detail::make_auto_solver(o);
@@ -80,31 +70,22 @@ constexpr KnownSolver known[] = {
 } // namespace
 
 std::span<const SolverDescription> coulomb_solvers() {
-  static constexpr auto descriptions = [] {
-    std::array<SolverDescription, std::size(known)> about;
-    for (std::size_t k = 0; k < about.size(); ++k) about[k] = known[k].about;
-    return about;
-  }();
-  return descriptions;
+  return known;
 }
 
 std::unique_ptr<CoulombSolver> make_coulomb_solver(const SolverOptions& options) {
   std::string names;
-  for (const KnownSolver& solver : known) {
-    if (solver.about.name == options.solver) {
+  for (const SolverDescription& solver : known) {
+    if (solver.name == options.solver) {
       auto made = solver.make(options);
       return options.check_every
                  ? detail::make_checked_solver(std::move(made), *options.check_every)
                  : std::move(made);
     }
-    names.append(names.empty() ? "" : ", ").append(solver.about.name);
+    names.append(names.empty() ? "" : ", ").append(solver.name);
   }
   throw InputError("unknown Coulomb solver '" + options.solver + "' (known: " + names
                    + ")");
-}
-
-std::unique_ptr<CoulombSolver> make_coulomb_solver(std::string_view name) {
-  return make_coulomb_solver(SolverOptions{.solver = std::string(name)});
 }
 
 } // namespace ehdjet

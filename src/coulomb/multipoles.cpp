@@ -5,7 +5,7 @@
 
 namespace ehdjet::detail {
 
-// From and to a set that nobody looks at.
+// An unused lane reads zeros and writes to a set that is never read.
 ExpansionKernel::Batch idle_batch() {
   static const std::array<double, coefficients(highest_order)> zero{};
   thread_local std::array<double, coefficients(highest_order)> nowhere{};
@@ -60,14 +60,14 @@ void Multipoles::gather(const ClusterTree& tree, const ChargeColumns& charges) {
     shift_level(expansions_, tree, level, sets_.data(), Shift::upward);
 }
 
-// The power of degree l, sqrt(sum_m |M_l^m|^2), is Q r^l at most: for charges in two places at the
-// ends of the cluster. For a straight piece of a curve it is Q r^l/(l+1), on a ring a third of Q r^l,
-// and the criterion is calibrated on those. The last two degrees, because on a symmetric
-// cluster every other one vanishes.
+// The power of degree l, sqrt(sum_m |M_l^m|^2), is at most Q r^l, which is reached by charges in two
+// places at the ends of the cluster. For a straight piece of a curve it is Q r^l/(l+1), for a ring a
+// third of Q r^l. The acceptance criterion is calibrated for these two. The last two degrees are
+// used, because every other degree of a symmetric cluster vanishes.
 void Multipoles::weigh(ClusterTree& tree) const {
   constexpr double smooth = 0.4;
   const int p = expansions_.numbers.order;
-  const double most = p + 1; // the field of degree p is p + 1 times its potential over r
+  const double most = p + 1; // the field of degree p is (p + 1) times its potential over r
   const auto clusters = tree.clusters();
 #pragma omp for schedule(static)
   for (std::size_t k = 0; k < clusters.size(); ++k) {
@@ -75,7 +75,7 @@ void Multipoles::weigh(ClusterTree& tree) const {
     c.lumped = 1;
     if (!(c.radius > 0 && c.charge > 0)) continue;
     if (c.moving > 0 && c.moving < static_cast<double>(tree.end_of(c) - c.begin)) {
-      c.lumped = most; // those that move may all be at one end
+      c.lumped = most; // the charges that move may all be at one end
       continue;
     }
     const double* set = (*this)[k];
@@ -86,7 +86,7 @@ void Multipoles::weigh(ClusterTree& tree) const {
 #pragma omp simd reduction(+ : half)
       for (std::size_t i = real_part(l, 1); i < real_part(l + 1, 0); ++i)
         half += set[i] * set[i];
-      // Of the smallest radii no power is left: the worst case.
+      // For tiny radii the power underflows. Then the worst case is assumed.
       if (!(2 * half <= smooth * smooth * most_power) || most_power < 1e-290)
         part =
             std::max(part, most_power < 1e-290 ? 1 : std::min(1.0, 2 * half / most_power));

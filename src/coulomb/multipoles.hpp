@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "cluster_tree.hpp"
-#include "expansion_kernel.hpp"
 #include "expansion_tables.hpp"
+#include "kernels.hpp"
 
 namespace ehdjet::detail {
 
@@ -26,7 +26,7 @@ struct Displacement {
   return {to[0] - from[0], to[1] - from[1], to[2] - from[2]};
 }
 
-/// A batch whose lanes do nothing, and one lane of it put to use.
+/// A batch whose lanes have no effect. `set_lane` assigns a cluster to a lane.
 [[nodiscard]] ExpansionKernel::Batch idle_batch();
 inline void set_lane(ExpansionKernel::Batch& batch, std::size_t lane, const double* from,
                      double* to, const Displacement& d) {
@@ -34,14 +34,14 @@ inline void set_lane(ExpansionKernel::Batch& batch, std::size_t lane, const doub
   batch.dx[lane] = d.x, batch.dy[lane] = d.y, batch.dz[lane] = d.z;
 }
 
-/// The kernel of one order, with its tables.
+/// The kernel with the tables of one order.
 struct Expansions {
   Expansions(const ExpansionKernel& operators, int order)
       : kernel(operators)
       , tables(order)
       , numbers(tables.numbers())
       , set(coefficients(order)) {}
-  Expansions(const Expansions&) = delete; // numbers point into tables
+  Expansions(const Expansions&) = delete; // `numbers` points into `tables`
   Expansions& operator=(const Expansions&) = delete;
 
   ExpansionKernel kernel;
@@ -50,14 +50,14 @@ struct Expansions {
   std::size_t set; ///< numbers per coefficient set
 };
 
-/// Moves the expansions of the clusters of one level to their parents (upward), where they
-/// replace what was there, or adds those of the parents to theirs. Every thread of the team;
-/// `level` is the parents', `sets` has one coefficient set per cluster.
+/// Upward: sets the multipoles of the clusters of one level from those of their children. Downward:
+/// adds the local expansions of the clusters of one level to those of their children. `sets` has one
+/// coefficient set per cluster. Every thread of the team must call it.
 enum class Shift { upward, downward };
 void shift_level(const Expansions& expansions, const ClusterTree& tree, std::size_t level,
                  double* sets, Shift direction);
 
-/// Multipoles of all clusters of a tree.
+/// The multipoles of all clusters of a tree. Every thread of the team must call `gather` and `weigh`.
 class Multipoles {
 public:
   explicit Multipoles(const Expansions& expansions)
@@ -66,10 +66,8 @@ public:
     const std::size_t numbers = expansions_.set * tree.clusters().size();
     if (sets_.size() < numbers) sets_.resize(numbers);
   }
-  /// Leaves from their charges, parents from their children. Every thread of the team.
   void gather(const ClusterTree& tree, const ChargeColumns& charges);
-  /// Tells each cluster how much more its series errs than that of charges that are spread over
-  /// it. Every thread of the team.
+  /// Sets Cluster::lumped: the error of the series relative to that of evenly spread charges.
   void weigh(ClusterTree& tree) const;
   [[nodiscard]] const double* operator[](std::size_t cluster) const {
     return sets_.data() + expansions_.set * cluster;

@@ -1,18 +1,17 @@
 #include <immintrin.h>
 
 #include "expansions.hpp"
-#include "pair_tiles.hpp"
 
 namespace ehdjet::detail {
 namespace {
 
-/// `vrsqrtps`: relative error below 1.5 2^-12, so |e| < 7.4e-4. The root and the division that
-/// it replaces take as long as the whole tile on processors with one slow divider.
+/// The relative error of `vrsqrtps` is below 1.5 2^-12, so that |e| < 7.4e-4. On processors with a
+/// single slow divider, an exact root and division would take as long as the rest of the tile.
 struct Avx2 {
   typedef double Vector __attribute__((vector_size(32)));
   typedef long long Mask __attribute__((vector_size(32)));
-  static constexpr int lanes = 4, targets = 2, vectors = 4,
-                       degree = 4; // shape: fastest of 12
+  // This shape of the tile was the fastest of twelve.
+  static constexpr int lanes = 4, targets = 2, vectors = 4, degree = 4;
 
   static Vector inverse_sqrt(Vector r2) {
     return _mm256_cvtps_pd(_mm_rsqrt_ps(_mm256_cvtpd_ps(r2)));
@@ -25,12 +24,8 @@ struct Avx2 {
 
 } // namespace
 
-PairKernel avx2_pair_kernel() {
-  return pair_kernel<Avx2>();
-}
-
-ExpansionKernel avx2_expansion_kernel() {
-  return expansion_kernel<Avx2>();
+Kernels avx2_kernels() {
+  return {pair_kernel<Avx2>(), expansion_kernel<Avx2>()};
 }
 
 } // namespace ehdjet::detail

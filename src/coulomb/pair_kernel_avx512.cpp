@@ -1,19 +1,19 @@
 #include <immintrin.h>
 
 #include "expansions.hpp"
-#include "pair_tiles.hpp"
 
 namespace ehdjet::detail {
 namespace {
 
-/// `vrsqrt14pd`: relative error below 2^-14, so |e| < 2^-13, over the whole double range.
+/// The relative error of `vrsqrt14pd` is below 2^-14 for all doubles, so that |e| < 2^-13.
 struct Avx512 {
   typedef double Vector __attribute__((vector_size(64)));
   typedef long long Mask __attribute__((vector_size(64)));
-  static constexpr int lanes = 8, targets = 2, vectors = 2, degree = 3; // no spills
+  // With this shape of the tile all values stay in registers.
+  static constexpr int lanes = 8, targets = 2, vectors = 2, degree = 3;
 
-  // The forms with a full mask are the same instructions; GCC 12 takes the plain ones for uses
-  // of an uninitialised value (GCC bug 105593).
+  // A full mask gives the same instructions. For the plain forms GCC 12 warns of an uninitialised
+  // value (GCC bug 105593).
   static constexpr __mmask8 all = 0xff;
 
   static Vector inverse_sqrt(Vector r2) { return _mm512_maskz_rsqrt14_pd(all, r2); }
@@ -25,12 +25,8 @@ struct Avx512 {
 
 } // namespace
 
-PairKernel avx512_pair_kernel() {
-  return pair_kernel<Avx512>();
-}
-
-ExpansionKernel avx512_expansion_kernel() {
-  return expansion_kernel<Avx512>();
+Kernels avx512_kernels() {
+  return {pair_kernel<Avx512>(), expansion_kernel<Avx512>()};
 }
 
 } // namespace ehdjet::detail

@@ -1,10 +1,9 @@
 #include "expansions.hpp"
-#include "pair_tiles.hpp"
 
 namespace ehdjet::detail {
 namespace {
 
-/// Two lanes, which every 64-bit processor has, and the exact root: nothing to correct.
+/// Two lanes, which every 64-bit processor has, and the exact root, which needs no correction.
 struct Portable {
   typedef double Vector __attribute__((vector_size(16)));
   typedef long long Mask __attribute__((vector_size(16)));
@@ -19,12 +18,8 @@ struct Portable {
 
 } // namespace
 
-PairKernel portable_pair_kernel() {
-  return pair_kernel<Portable>();
-}
-
-ExpansionKernel portable_expansion_kernel() {
-  return expansion_kernel<Portable>();
+Kernels portable_kernels() {
+  return {pair_kernel<Portable>(), expansion_kernel<Portable>()};
 }
 
 } // namespace ehdjet::detail

@@ -4,58 +4,61 @@
 
 #include "pair_kernel.hpp"
 
-// The pair kernel for any vector width, included by one source file per instruction set. The
-// linker must never mix those up, so all of this has internal linkage and no standard
-// function is used: an inline function emitted here could be the copy that other files run.
+// The pair kernel for any vector width. One source file per instruction set includes it. All of it
+// has internal linkage and uses no standard functions: the linker could otherwise use an inline
+// function that was compiled for one instruction set in files for another.
 namespace ehdjet::detail {
 namespace {
 
 #define EHDJET_INLINE [[gnu::always_inline]] inline
 
-/// What a kernel must know about its instruction set; each source file defines one.
+/// Each source file defines a class `Simd` for its instruction set:
 ///
 ///     Vector, Mask             `lanes` doubles; as many 64-bit integers
-///     targets, vectors         tile shape: beads x vectors of sources, to fill the registers
-///                              and to have enough independent chains in flight
+///     targets, vectors         shape of a tile: beads and vectors of sources. It fills the
+///                              registers and gives enough independent operations
 ///     degree                   of the polynomial below, 0 if the estimate is exact
 ///     inverse_sqrt(r2)         estimate of r2^-1/2, for r2 in [2^-120, 2^126]
 ///     smaller(a, b), any_below(a, bound)
+template <class Simd>
+using VectorOf = typename Simd::Vector;
 
-/// r^-3 from y ~ 1/r: with e = 1 - r^2 y^2 it is exactly y^3 (1 - e)^(-3/2), and
+/// r^-3 from an estimate y of 1/r. With e = 1 - r^2 y^2 it is exactly y^3 (1 - e)^(-3/2), and
 ///
 ///     (1 - e)^(-3/2) = 1 + 3/2 e + 15/8 e^2 + 35/16 e^3 + 315/128 e^4 + 693/256 e^5 + ...
 ///
-/// |e| <= 2^-13 (14-bit estimate) leaves 6e-16 after e^3, 7.4e-4 (12 bits) 6e-16 after e^4.
+/// For |e| <= 2^-13 (14-bit estimate) the terms after e^3 are below 6e-16. For |e| <= 7.4e-4
+/// (12 bits) this holds for the terms after e^4.
 template <class Simd>
-EHDJET_INLINE typename Simd::Vector inverse_cube(const typename Simd::Vector& r2) {
-  using Vector = typename Simd::Vector;
+EHDJET_INLINE VectorOf<Simd> inverse_cube(const VectorOf<Simd>& r2) {
+  using Vector = VectorOf<Simd>;
   const Vector y = Simd::inverse_sqrt(r2), y2 = y * y, y3 = y * y2;
   if constexpr (Simd::degree == 0) return y3;
   const Vector e = 1.0 - r2 * y2;
   Vector p = 1.875 + e * 2.1875;
   if constexpr (Simd::degree == 4) p = 1.875 + e * (2.1875 + e * 2.4609375);
-  return y3 + (y3 * e) * (1.5 + e * p); // this order has the shortest chain of dependences
+  return y3 + (y3 * e) * (1.5 + e * p); // this order has the shortest dependency chain
 }
 
 template <class Simd>
-EHDJET_INLINE typename Simd::Vector load(const double* p) {
-  return *reinterpret_cast<const typename Simd::Vector*>(p);
+EHDJET_INLINE VectorOf<Simd> load(const double* p) {
+  return *reinterpret_cast<const VectorOf<Simd>*>(p);
 }
 template <class Simd>
-EHDJET_INLINE void store(double* p, const typename Simd::Vector& v) {
-  *reinterpret_cast<typename Simd::Vector*>(p) = v;
+EHDJET_INLINE void store(double* p, const VectorOf<Simd>& v) {
+  *reinterpret_cast<VectorOf<Simd>*>(p) = v;
 }
 template <class Simd>
-EHDJET_INLINE double sum(const typename Simd::Vector& v) {
+EHDJET_INLINE double sum(const VectorOf<Simd>& v) {
   double s = v[0];
   for (int lane = 1; lane < Simd::lanes; ++lane) s += v[lane];
   return s;
 }
 
-/// A few beads, each repeated in all lanes, and the field they have gathered.
+/// A few beads, each repeated in all lanes, and the fields at their places.
 template <class Simd>
 struct Targets {
-  using Vector = typename Simd::Vector;
+  using Vector = VectorOf<Simd>;
   Vector x[Simd::targets], y[Simd::targets], z[Simd::targets], q[Simd::targets];
   Vector gx[Simd::targets], gy[Simd::targets], gz[Simd::targets];
 
@@ -67,9 +70,8 @@ struct Targets {
     }
   }
   EHDJET_INLINE void add_to(FieldColumns g, std::size_t i) const {
-    for (int t = 0; t < Simd::targets; ++t, ++i) {
+    for (int t = 0; t < Simd::targets; ++t, ++i)
       g.x[i] += sum<Simd>(gx[t]), g.y[i] += sum<Simd>(gy[t]), g.z[i] += sum<Simd>(gz[t]);
-    }
   }
 };
 
@@ -78,10 +80,10 @@ EHDJET_INLINE Vector magnitude(const Vector& v) {
   return v < 0.0 ? -v : v;
 }
 
-/// r_target - r_source of all pairs of a tile, chain k = vector * targets + target.
+/// r_target - r_source of all pairs of a tile. The index is k = vector * targets + target.
 template <class Simd, int vectors>
 struct Separations {
-  using Vector = typename Simd::Vector;
+  using Vector = VectorOf<Simd>;
   using Mask = typename Simd::Mask;
   static constexpr int chains = Simd::targets * vectors;
   Vector dx[chains], dy[chains], dz[chains], r2[chains];
@@ -99,7 +101,7 @@ struct Separations {
     }
   }
 
-  /// Leaves pairs with source <= target out, so that a bead is not close to itself either.
+  /// Leaves out pairs with source <= target. A bead is then not close to itself.
   EHDJET_INLINE void keep_sources_behind(std::size_t i, std::size_t j) {
 #pragma GCC unroll 16
     for (int k = 0; k < chains; ++k) {
@@ -115,7 +117,7 @@ struct Separations {
     }
   }
 
-  /// max|d| < close gives r^2 < 3 close^2, with room for rounding; the reverse need not hold.
+  /// False only if no pair is close: max|d| < close gives r^2 < 3 close^2, plus rounding errors.
   [[nodiscard]] EHDJET_INLINE bool may_be_close() const {
     Vector smallest = r2[0];
 #pragma GCC unroll 16
@@ -129,25 +131,22 @@ struct Separations {
       const Mask close = (magnitude(dx[k]) < close_distance)
                          & (magnitude(dy[k]) < close_distance)
                          & (magnitude(dz[k]) < close_distance);
-      r2[k] = close ? Vector{} + 0x1p120 : r2[k]; // leaves d/r^3 < 2^-240, nothing
+      r2[k] = close ? Vector{} + 0x1p120 : r2[k]; // then d/r^3 < 2^-240 has no effect
     }
   }
 };
 
-/// One tile: `Simd::targets` beads from i on, against `vectors` vectors of sources from j on.
-/// `diagonal`: the two ranges overlap. `mutual`: sources feel the targets, too. Returns whether a
-/// close pair may have been met.
-template <class Simd, int vectors, bool diagonal, bool mutual = true>
+/// Adds the fields of one tile: `Simd::targets` beads from i on, and `vectors` vectors of sources
+/// from j on. `diagonal`: the two ranges overlap. `mutual`: the targets also act on the sources.
+/// Returns whether the tile may have a close pair.
+template <class Simd, int vectors, bool diagonal, bool mutual>
 EHDJET_INLINE bool add_tile(const ChargeColumns& c, FieldColumns g, std::size_t i,
                             std::size_t j, Targets<Simd>& target) {
-  using Vector = typename Simd::Vector;
+  using Vector = VectorOf<Simd>;
   Separations<Simd, vectors> d(c, j, target);
   if constexpr (diagonal) d.keep_sources_behind(i, j);
-  bool met_close = false;
-  if (__builtin_expect(d.may_be_close(), 0)) {
-    met_close = true;
-    d.leave_out_close();
-  }
+  const bool met_close = d.may_be_close();
+  if (__builtin_expect(met_close, 0)) d.leave_out_close();
 
   Vector w[d.chains];
 #pragma GCC unroll 16
@@ -183,48 +182,29 @@ EHDJET_INLINE bool add_tile(const ChargeColumns& c, FieldColumns g, std::size_t 
   return met_close;
 }
 
-template <class Simd>
+template <class Simd, bool mutual>
 void add_fields(const ChargeColumns& charges, FieldColumns g, TileRows rows,
                 unsigned char* close) {
   static_assert(padding % Simd::lanes == 0 && padding % Simd::targets == 0);
   constexpr std::size_t lanes = Simd::lanes, targets = Simd::targets;
   constexpr std::size_t wide = lanes * Simd::vectors;
   const ChargeColumns c = charges; // a copy, so that stores to g cannot change the pointers
-  for (std::size_t row = rows.first; row < rows.last && row * targets < rows.end;
-       row += rows.stride) {
-    const std::size_t i = row * targets;
-    Targets<Simd> target(c, i);
-    bool met_close = false;
-    std::size_t j = i / lanes * lanes;
-    if (j < rows.begin) j = rows.begin;
-    for (; j < i + targets; j += lanes)
-      met_close |= add_tile<Simd, 1, true>(c, g, i, j, target);
-    for (; j + wide <= rows.end; j += wide)
-      met_close |= add_tile<Simd, Simd::vectors, false>(c, g, i, j, target);
-    if constexpr (Simd::vectors > 1)
-      for (; j < rows.end; j += lanes)
-        met_close |= add_tile<Simd, 1, false>(c, g, i, j, target);
-    target.add_to(g, i);
-    if (met_close) close[row] = 1;
-  }
-}
-
-template <class Simd>
-void add_fields_one_way(const ChargeColumns& charges, FieldColumns g, TileRows rows,
-                        unsigned char* close) {
-  constexpr std::size_t lanes = Simd::lanes, targets = Simd::targets;
-  constexpr std::size_t wide = lanes * Simd::vectors;
-  const ChargeColumns c = charges;
-  for (std::size_t row = rows.first; row < rows.last; row += rows.stride) {
+  for (std::size_t row = rows.first;
+       row < rows.last && (!mutual || row * targets < rows.end); row += rows.stride) {
     const std::size_t i = row * targets;
     Targets<Simd> target(c, i);
     bool met_close = false;
     std::size_t j = rows.begin;
+    if constexpr (mutual) {
+      if (const std::size_t own = i / lanes * lanes; j < own) j = own;
+      for (; j < i + targets; j += lanes)
+        met_close |= add_tile<Simd, 1, true, true>(c, g, i, j, target);
+    }
     for (; j + wide <= rows.end; j += wide)
-      met_close |= add_tile<Simd, Simd::vectors, false, false>(c, g, i, j, target);
+      met_close |= add_tile<Simd, Simd::vectors, false, mutual>(c, g, i, j, target);
     if constexpr (Simd::vectors > 1)
       for (; j < rows.end; j += lanes)
-        met_close |= add_tile<Simd, 1, false, false>(c, g, i, j, target);
+        met_close |= add_tile<Simd, 1, false, mutual>(c, g, i, j, target);
     target.add_to(g, i);
     if (met_close) close[row] = 1;
   }
@@ -232,10 +212,8 @@ void add_fields_one_way(const ChargeColumns& charges, FieldColumns g, TileRows r
 
 template <class Simd>
 PairKernel pair_kernel() {
-  return {add_fields<Simd>, add_fields_one_way<Simd>, Simd::targets};
+  return {add_fields<Simd, true>, add_fields<Simd, false>, Simd::targets};
 }
-
-#undef EHDJET_INLINE
 
 } // namespace
 } // namespace ehdjet::detail

@@ -9,8 +9,8 @@
 namespace ehdjet::detail {
 namespace {
 
-/// p such that |v| 2^p < 2^exponent for all |v| <= largest, nearly attained; limited to where
-/// 2^p is finite, beyond which all pairs are close or all charges tiny, and still right.
+/// The largest p with |v| 2^p < 2^exponent for all |v| <= largest, but at most 1000, so that 2^p is
+/// finite. Results remain correct at this limit: all pairs are close, or all charges are tiny.
 int scale_exponent(double largest, int exponent) {
   if (largest == 0) return 0;
   int e = 0;
@@ -18,7 +18,7 @@ int scale_exponent(double largest, int exponent) {
   return std::min(exponent - e, 1000);
 }
 
-/// Fewer charges than this are copied in less time than it takes to wake up threads.
+/// For fewer charges, starting the threads takes longer than copying.
 constexpr std::size_t parallel_from = 30'000;
 
 double largest_magnitude(std::span<const double> v) {
@@ -67,14 +67,13 @@ void ScaledCharges::load(std::span<const PointCharges> groups, std::size_t threa
   std::fill(close_.begin(), close_.end(), static_cast<unsigned char>(0));
   if (any_rests_ && moves_.size() < length) moves_.resize(length);
 
-  // A difference of scaled coordinates is the scaled difference.
   const int p_r = scale_exponent(extent, coordinate_exponent);
   const int p_q = scale_exponent(charge, 0);
   scale_ = std::ldexp(1, p_r), charge_scale_ = std::ldexp(1, p_q);
-  // f = q q / r^2 is unscaled by 2^(2 p_r - 2 p_q); the whole of it may be out of range.
+  // The factor of f = q q / r^2 is 2^(2 p_r - 2 p_q). It may overflow, so its root is stored.
   root_unscale_ = std::ldexp(1, std::clamp(p_r - p_q, -1000, 1000));
   energy_exponent_ = p_r - 2 * p_q;
-  std::size_t padded = 0; // charges, each in a place of its own
+  std::size_t padded = 0; // each charge of the padding has its own place
   for (std::size_t g = 0; g < number_; ++g) {
     fill(groups_[g]);
     for (std::size_t i = groups_[g].begin + groups[g].size(); i < groups_[g].end; ++i) {
@@ -146,7 +145,7 @@ std::size_t ScaledCharges::add_close_pairs(Vec3View force, bool met_coincident) 
   if (!met_coincident && std::ranges::find(close_, 1) == close_.end()) return 0;
   const std::size_t pairs =
       close_pairs_.add_forces(sources().charges, targets().charges, scale_, force);
-  // Of one group each charge has met itself, and each pair twice.
+  // In one group each charge has met itself, and each pair has been counted twice.
   return number_ == 2 ? pairs : (pairs - sources().charges.size()) / 2;
 }
 

@@ -1,13 +1,11 @@
-#include <algorithm>
-
 #include "far_field.hpp"
 
 namespace ehdjet::detail {
 namespace {
 
-/// Barnes-Hut treecode with multipoles: each leaf's charges feel far clusters through their
-/// multipoles, directly, and near leaves charge by charge. No local expansions, no conflicts
-/// between threads.
+/// Barnes-Hut treecode with multipoles. The field at the charges of a leaf is that of the multipoles
+/// of distant clusters, plus that of the charges of near leaves. There are no local expansions and
+/// no conflicts between threads.
 ///
 /// cost   : O(n log n); memory: one coefficient set and its gradient per cluster
 /// source : Barnes & Hut, Nature 324 (1986) 446
@@ -32,7 +30,7 @@ public:
                                              gradient(k));
     const auto leaves = p.targets.leaves();
     Counts counts;
-    // All leaves cost about the same, so that each thread may have its own range of them.
+    // Each thread gets a range of leaves, because all leaves cost about the same.
 #pragma omp for schedule(static)
     for (std::size_t i = 0; i < leaves.size(); ++i) feel(p, leaves[i], 0, counts);
 #pragma omp critical

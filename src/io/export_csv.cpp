@@ -6,15 +6,12 @@
 #include <limits>
 #include <numbers>
 #include <numeric>
-#include <string>
 #include <utility>
 #include <vector>
 
 #include "record_columns.hpp"
-#include "selected_frames.hpp"
 
 namespace ehdjet {
-
 namespace {
 
 void print_csv(const RunTable& table, TextOutput& output) {
@@ -30,7 +27,7 @@ void print_csv(const RunTable& table, TextOutput& output) {
   output.close();
 }
 
-/// A table with its columns in the order of `list`, those that are not in it at the end.
+/// Sorts the columns of a table into the order of `list`. Columns that are not in the list follow.
 template <class List>
 RunTable in_order(RunTable table, const List& list) {
   auto next = table.columns.begin();

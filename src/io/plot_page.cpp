@@ -1,6 +1,5 @@
-#include "ehdjet/io/plot_page.hpp"
-
 #include "ehdjet/core/error.hpp"
+#include "ehdjet/io/export.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -12,14 +11,12 @@
 #include <vector>
 
 namespace ehdjet {
-
 namespace {
 
 using Values = std::vector<double>;
 
-// Okabe and Ito's colours, which colour-blind readers can tell apart.
+// The colours of Okabe and Ito, which colour-blind readers can distinguish.
 constexpr const char* blue = "#0072B2";
-
 constexpr const char* green = "#009E73";
 constexpr const char* vermillion = "#D55E00";
 constexpr const char* purple = "#CC79A7";
@@ -29,7 +26,7 @@ constexpr double page_width = 1600, page_height = 1000; // [px]
 
 struct Unit {
   const char* name;
-  double size; // in SI units
+  double size; // [SI unit]
 };
 
 Unit length_unit(double extent) {
@@ -50,37 +47,34 @@ struct Range {
 Range range_of(const Values& values) {
   Range range{std::numeric_limits<double>::infinity(),
               -std::numeric_limits<double>::infinity()};
-  for (const double value : values) {
+  for (const double value : values)
     if (std::isfinite(value))
       range = {std::min(range.low, value), std::max(range.high, value)};
-  }
   return range;
 }
 
-// With air around the curve, and never empty: gnuplot refuses to draw an empty range.
+// Adds a margin to the range. The result is never empty, because gnuplot refuses an empty range.
 Range padded(Range range) {
   if (!(range.low <= range.high)) return {0, 1};
-  const double air = range.high > range.low ? 0.06 * (range.high - range.low)
-                     : range.high != 0      ? 0.1 * std::abs(range.high)
-                                            : 1;
-  return {range.low - air, range.high + air};
+  const double margin = range.high > range.low ? 0.06 * (range.high - range.low)
+                        : range.high != 0      ? 0.1 * std::abs(range.high)
+                                               : 1;
+  return {range.low - margin, range.high + margin};
 }
 
-double largest(const Values& a, const Values& b = {}) {
-  double value = 0;
-  for (const double x : a) value = std::max(value, std::abs(x));
-  for (const double x : b) value = std::max(value, std::abs(x));
-  return value;
+double largest(const Values& values) {
+  double largest = 0;
+  for (const double value : values) largest = std::max(largest, std::abs(value));
+  return largest;
 }
 
 std::string in_quotes(std::string_view text) { // in gnuplot's single quotes
   std::string result(1, '\'');
   for (const char c : text) result.append(c == '\'' ? 2 : 1, c);
-  result += '\'';
-  return result;
+  return result + '\'';
 }
 
-// A box on the page, as fractions of it, measured from the lower left corner.
+// A box in fractions of the page, measured from the lower left corner.
 struct Box {
   double left, right, bottom, top;
 };
@@ -93,12 +87,11 @@ std::string place(const Box& box) {
 
 std::string data_block(const char* name, const Values& a, const Values& b, double unit_a,
                        double unit_b) {
-  constexpr std::size_t enough = 20000; // rows: more than the page has pixels
-  const std::size_t stride = a.size() / enough + 1;
+  constexpr std::size_t most_rows = 20000; // more than the page has pixels
+  const std::size_t stride = a.size() / most_rows + 1;
   std::string block = fmt::format("${} << EOD\n", name);
-  for (std::size_t i = 0; i < a.size(); i += stride) {
+  for (std::size_t i = 0; i < a.size(); i += stride)
     block += fmt::format("{:.7g} {:.7g}\n", a[i] / unit_a, b[i] / unit_b);
-  }
   return block + "EOD\n";
 }
 
@@ -110,39 +103,38 @@ std::string terminal(const std::filesystem::path& output) {
   if (extension == ".png") return "pngcairo size " + size(1) + " font 'sans,15'";
   if (extension == ".svg")
     return "svg size " + size(1) + " font 'sans,18' background '#ffffff'";
-  if (extension == ".pdf") {
-    // 108 px per inch: the same proportions of text and page as in the other formats
+  if (extension == ".pdf") // 108 px per inch gives the same proportions of text and page
     return fmt::format("pdfcairo size {:g}in,{:g}in font 'sans,14'", page_width / 108,
                        page_height / 108);
-  }
   throw InputError(fmt::format("cannot plot to {}: the name must end in .png, .svg or .pdf",
                                output.string()));
 }
 
-// What the two views have to show, in the same unit.
+// The ranges of the two views [m], and the unit of their axes.
 struct Extent {
   Range x;
   double across; // largest |y| or |z|
   Unit unit;
 };
 
-// The deposit across the axis, bead by bead [m].
+// Coordinates of the deposited beads across the axis [m].
 struct Deposited {
   Values y, z;
 };
 
 Extent extent_of(const Frame& f, const Deposited& deposit) {
-  const double across = std::max(largest(f["y"], f["z"]), largest(deposit.y, deposit.z));
+  const double across =
+      std::max({largest(f["y"]), largest(f["z"]), largest(deposit.y), largest(deposit.z)});
   Range x = range_of(f["x"]);
-  const double least =
-      std::max({x.high - x.low, 0.3 * across, 1e-9}); // a flat chain is no line
+  // A chain in a plane x = const also gets a view of some width.
+  const double least = std::max({x.high - x.low, 0.3 * across, 1e-9});
   x.high = x.low + least;
   return {{x.low - 0.02 * least, x.high + 0.02 * least},
           std::max(1.08 * across, 0.1 * least),
           length_unit(least)};
 }
 
-// Boxes for both views in which a metre has the same length, in either direction.
+// Boxes for the two views. A metre has the same length in both views and both directions.
 std::pair<Box, Box> view_boxes(const Extent& extent, double bottom, double top) {
   const double left = 0.07, gap = 0.085, right = 0.985;
   const double width = extent.x.high - extent.x.low + 2 * extent.across; // of both [m]
@@ -157,7 +149,7 @@ std::pair<Box, Box> view_boxes(const Extent& extent, double bottom, double top) 
           {side_end + gap, end, middle - half_height, middle + half_height}};
 }
 
-// What has landed by that time [s].
+// The beads that have left the chain until `time` [s].
 Deposited landed_by(double time, const RunReader& run) {
   if (!run.has("deposit")) return {};
   const RunTable deposit = run.table("deposit");
@@ -176,10 +168,9 @@ std::string views(const Frame& f, const Deposited& deposit, double bottom, doubl
   const auto [side, along] = view_boxes(extent, bottom, top);
   const double m = extent.unit.size;
   Values x, y, z; // of landed beads
-  for (std::size_t k = 0; k < f.rows(); ++k) {
+  for (std::size_t k = 0; k < f.rows(); ++k)
     if (f["landed"][k] != 0)
       x.push_back(f["x"][k]), y.push_back(f["y"][k]), z.push_back(f["z"][k]);
-  }
   std::string s =
       data_block("side", f["x"], f["y"], m, m) + data_block("along", f["y"], f["z"], m, m)
       + data_block("landed_side", x, y, m, m) + data_block("landed_along", y, z, m, m)
@@ -206,10 +197,9 @@ std::string views(const Frame& f, const Deposited& deposit, double bottom, doubl
                      "set xrange [-{1:.7g}:{1:.7g}]\nset yrange [-{1:.7g}:{1:.7g}]\nplot ",
                      extent.unit.name, extent.across / m,
                      deposit.y.empty() ? "unset key" : "");
-  if (!deposit.y.empty()) {
+  if (!deposit.y.empty())
     s +=
         fmt::format("$deposit with points lc rgb '{}' pt 7 ps 0.4 title 'deposit', ", grey);
-  }
   s += "$along " + jet + ", $nozzle_along " + nozzle + "notitle";
   if (!x.empty()) s += ", $landed_along " + landed + "notitle";
   return s + "\n";
@@ -217,9 +207,9 @@ std::string views(const Frame& f, const Deposited& deposit, double bottom, doubl
 
 struct Panel {
   const char* title;
-  std::string unit; // empty for a number
+  std::string unit; // empty if the values have none
   const char* colour;
-  Values values; // NaN where there is none
+  Values values; // NaN where there is no value
 };
 
 std::vector<Panel> panels(const RunReader& run) {
@@ -231,10 +221,8 @@ std::vector<Panel> panels(const RunReader& run) {
     return Panel{title, unit.name, colour, std::move(values)};
   };
   Values impact = run.column("observables", "impact_speed");
-  for (double& speed : impact) {
-    if (speed == 0)
-      speed = std::numeric_limits<double>::quiet_NaN(); // nothing has landed yet
-  }
+  // The speed is 0 before the first bead has landed.
+  std::ranges::replace(impact, 0.0, std::numeric_limits<double>::quiet_NaN());
   return {{"Beads", "", blue, run.column("observables", "beads")},
           with_length_unit("Path length", "path_length", vermillion),
           with_length_unit("Tip: distance from the axis", "tip_yz", green),
@@ -243,20 +231,20 @@ std::vector<Panel> panels(const RunReader& run) {
 
 std::string draw(const Panel& panel, const Values& time, const Unit& unit, const Box& box) {
   const Range range = range_of(panel.values), shown = padded(range), times = range_of(time);
-  std::string s = data_block("panel", time, panel.values, unit.size, 1) + place(box);
-  const std::string in_unit =
-      panel.unit.empty() ? std::string() : fmt::format("  ({})", panel.unit);
-  s += fmt::format(
-      "set title '{}{}' offset 0,-0.4\nunset key\nunset ylabel\nset xlabel 'time  ({})'\n",
-      panel.title, in_unit, unit.name);
   const double end = times.high > times.low ? times.high : times.low + unit.size;
-  s += fmt::format("set xrange [{:.7g}:{:.7g}]\nset yrange [{:.7g}:{:.7g}]\n",
-                   times.low / unit.size, end / unit.size, shown.low, shown.high);
-  if (!(range.low <= range.high)) s += "set label 99 'none yet' at graph 0.5,0.5 center\n";
-  return s
-         + fmt::format(
-             "plot $panel with lines lc rgb '{}' lw 2\nunset label 1\nunset label 99\n",
-             panel.colour);
+  const std::string in_unit = panel.unit.empty() ? "" : "  (" + panel.unit + ")";
+  return data_block("panel", time, panel.values, unit.size, 1) + place(box)
+         + fmt::format("set title '{}{}' offset 0,-0.4\nunset key\nunset ylabel\n"
+                       "set xlabel 'time  ({})'\n"
+                       "set xrange [{:.7g}:{:.7g}]\nset yrange [{:.7g}:{:.7g}]\n{}"
+                       "plot $panel with lines lc rgb '{}' lw 2\n"
+                       "unset label 1\nunset label 99\n",
+                       panel.title, in_unit, unit.name, times.low / unit.size,
+                       end / unit.size, shown.low, shown.high,
+                       range.low <= range.high
+                           ? ""
+                           : "set label 99 'none yet' at graph 0.5,0.5 center\n",
+                       panel.colour);
 }
 
 std::string observables(const RunReader& run, std::optional<double> frame_time,
@@ -268,13 +256,11 @@ std::string observables(const RunReader& run, std::optional<double> frame_time,
   const double width = 0.955 / static_cast<double>(per_row);
   const double height = (top - bottom) / static_cast<double>(rows);
   std::string s = "set tics font ',13'\n";
-  if (frame_time) { // where the views above belong
-    const double t = *frame_time / unit.size;
+  if (frame_time) // marks the time of the views
     s += fmt::format(
         "set arrow 1 from first {0:.7g}, graph 0 to first {0:.7g}, graph 1 nohead "
         "lc rgb '{1}' dt 2 lw 1.5 back\n",
-        t, grey);
-  }
+        *frame_time / unit.size, grey);
   for (std::size_t i = 0; i < all.size(); ++i) {
     const std::size_t row = i / per_row;
     const double left = 0.03 + width * static_cast<double>(i % per_row);
@@ -295,9 +281,8 @@ std::string plot_page(const RunReader& run, std::optional<double> time,
   const bool has_frames = run.has("frames") && !run.frame_times().empty();
   const bool has_observables =
       run.has("observables") && !run.column("observables", "time").empty();
-  if (!has_frames && !has_observables) {
+  if (!has_frames && !has_observables)
     throw InputError(run.path().string() + " has neither frames nor observables to plot");
-  }
   s +=
       "set border 3 lc rgb '#404040'\nset tics nomirror out scale 0.6\n"
       "set grid lc rgb '#E4E4E4' lw 1 lt 1\nset key samplen 1 opaque box lc rgb '#E4E4E4'\n"
@@ -315,10 +300,9 @@ std::string plot_page(const RunReader& run, std::optional<double> time,
   }
   s += fmt::format("set label 1 {} at screen 0.5,0.968 center font ',20' noenhanced\n",
                    in_quotes(heading));
-  s += views_text; // unsets the label once it is drawn
-  if (has_observables) {
+  s += views_text; // draws the label once and then unsets it
+  if (has_observables)
     s += observables(run, frame_time, 0.01, has_frames ? 0.345 : 0.93, has_frames ? 4 : 2);
-  }
   return s + "unset multiplot\nunset output\n";
 }
 

@@ -1,13 +1,9 @@
 #include "record_columns.hpp"
 
-#include "ehdjet/core/error.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <string>
-#include <utility>
 
 namespace ehdjet {
 namespace {
@@ -29,15 +25,15 @@ double tip_from_axis(const JetSnapshot& s) {
   return std::hypot(tip(s).y(), tip(s).z());
 }
 
-/// What has been added to a sum since the previous row, over the time between.
+/// The change of a sum since the previous row, divided by the time since then.
 class Rate {
 public:
   explicit Rate(CompensatedSum Ledger::*sum)
       : sum_(sum) {}
   double operator()(const JetSnapshot& s) {
     const double now = s.ledger.*sum_, elapsed = s.time - previous_time_;
-    const bool first = !(elapsed > 0); // also of a row that comes twice
-    const double rate = first ? 0. : (now - previous_) / elapsed;
+    // No time has elapsed in the first row, and if the same time is written twice.
+    const double rate = elapsed > 0 ? (now - previous_) / elapsed : 0.;
     previous_time_ = s.time, previous_ = now;
     return rate;
   }
@@ -51,24 +47,20 @@ private:
 auto from_ledger(double Ledger::*value) {
   return [value](const JetSnapshot& s) { return s.ledger.*value; };
 }
-
 auto from_statistics(std::uint64_t RunStatistics::*value) {
   return [value](const JetSnapshot& s) { return static_cast<double>(s.statistics.*value); };
 }
-
 auto change_of(double JetTotals::*value) {
   return [value](const RefinementRecord& r) { return r.change.*value; };
 }
-
 auto momentum_change(int component) {
   return [component](const RefinementRecord& r) { return r.change.momentum[component]; };
 }
-
 auto number_of(std::size_t RefinementRecord::*value) {
   return [value](const RefinementRecord& r) { return static_cast<double>(r.*value); };
 }
 
-/// Of all beads, computed; `fill(snapshot, values)` finds zeros.
+/// A column that `fill(snapshot, values)` computes. The values are zero before.
 template <class Fill>
 auto computed(Fill fill) {
   return [fill, values = std::vector<double>()](
@@ -85,7 +77,7 @@ void fill_radius(const JetSnapshot& s, std::vector<double>& values) {
   for (std::size_t k = jet.first(); k < jet.beads(); ++k)
     values[k] = link_radius(jet.volume[k], link_length(r, jet.first(), k));
   if (jet.has_embryo) values[1] = link_radius(jet.volume[1], (r[1] - r[0]).norm());
-  // Bead 0 has no link; it gets the radius of the first one, so that a drawn jet has a start.
+  // Bead 0 has no link. It gets the radius of the first link, with which a drawn jet begins.
   if (jet.first() < jet.beads()) values[0] = values[jet.first()];
 }
 
@@ -197,6 +189,11 @@ std::vector<RunTable::Column> further_columns(const Frame& frame) {
   return further;
 }
 
+std::vector<double> column_or_zeros(const Frame& frame, std::string_view name) {
+  const RunTable::Column* found = frame.find(name);
+  return found != nullptr ? found->values : std::vector<double>(frame.rows());
+}
+
 std::vector<RecordColumn<DepositedBead>>
 deposit_columns(std::shared_ptr<const BeadTable> table) {
   std::vector<RecordColumn<DepositedBead>> columns{
@@ -221,7 +218,7 @@ deposit_columns(std::shared_ptr<const BeadTable> table) {
                      [](const auto& d) { return d.radius; }});
   for (std::size_t c = 0; c < table->carried().size(); ++c)
     add(table->carried()[c], integrated + c);
-  // The volume stands last of these in an export.
+  // In an export the volume is the last of the basic carried columns.
   const auto volume = std::ranges::find(columns, "volume", &ColumnInfo::name);
   std::rotate(volume, volume + 1, volume + BeadTable::basic_carried);
   return columns;

@@ -2,42 +2,44 @@
 
 #include "ehdjet/jet/ledger.hpp"
 #include "ehdjet/observers/observer.hpp"
-#include "ehdjet/run_files/column.hpp"
-#include "ehdjet/run_files/run_table.hpp"
+#include "ehdjet/run_files/run_file.hpp"
+#include "ehdjet/run_files/run_reader.hpp"
 
 #include <functional>
 #include <memory>
 #include <span>
+#include <string_view>
 #include <vector>
 
+/// The parts of a run file as lists of columns. Observers that write them and exports that read
+/// them use these lists: a new column is a new line in one list.
 namespace ehdjet {
 
-// The parts of a run file as lists of columns. Observers that write, and exports, go through them;
-// a new column is a new line in one of them.
-
-/// A column of a part that has a row per `Row`: a time, a deposited bead or a refinement. A value
-/// may depend on earlier rows, so that each writer has a list of its own.
+/// A column of a part that has one row per `Row`: an output time, a deposited bead or a refinement.
+/// A value may depend on earlier rows; each writer therefore has its own list.
 template <class Row>
 struct RecordColumn : ColumnInfo {
   std::function<double(const Row&)> value;
 };
 
 std::vector<RecordColumn<JetSnapshot>> observable_columns();
-/// Of beads with these columns, and `stress` in any case.
+/// For beads that have the columns of `table`. The deposit always has a column `stress`.
 std::vector<RecordColumn<DepositedBead>>
 deposit_columns(std::shared_ptr<const BeadTable> table);
 std::vector<RecordColumn<RefinementRecord>> refinement_columns();
 
-/// A number that each bead of a frame has.
+/// A value that each bead of a frame has.
 struct FrameColumn : ColumnInfo {
   std::function<std::span<const double>(const JetSnapshot&)> values;
 };
 
 /// The columns of /beads, in the order of an export.
 std::vector<FrameColumn> frame_columns(const BeadTable& table);
-/// The columns of beads that every export has, also that of a run without stress.
+/// The columns of beads that every export has, even if the run has no stress.
 std::shared_ptr<const BeadTable> exported_table();
-/// What a frame has besides `frame_columns(*exported_table())`.
+/// The columns of a frame that are not in `frame_columns(*exported_table())`.
 std::vector<RunTable::Column> further_columns(const Frame& frame);
+/// A column of a frame, or zeros if the frame does not have it.
+std::vector<double> column_or_zeros(const Frame& frame, std::string_view name);
 
 } // namespace ehdjet

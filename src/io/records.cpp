@@ -2,7 +2,9 @@
 
 #include "ehdjet/core/error.hpp"
 
+#include <array>
 #include <optional>
+#include <span>
 #include <string_view>
 #include <type_traits>
 #include <utility>
@@ -15,53 +17,71 @@ namespace {
 
 constexpr std::size_t chunk_rows = 1024;
 
-/// Writes a part of a run file that has a row per `Row`. Rows at times come at multiples of
-/// `interval` [s].
+/// Writes a part of a run file, at multiples of `interval` [s] or when something happens.
+class Recorder : public Observer {
+public:
+  Recorder(std::shared_ptr<RunFile> file, std::optional<double> interval)
+      : file_(std::move(file)) {
+    EHDJET_EXPECTS(!interval || *interval > 0);
+    if (interval) schedule_.emplace(*interval);
+  }
+  [[nodiscard]] double next_time() const final {
+    return schedule_ ? schedule_->next() : Observer::next_time();
+  }
+  void skip_to(double time) final {
+    if (schedule_) schedule_->skip_to(time);
+  }
+  void observe(const JetSnapshot& snapshot) final {
+    file_->write([&] { append(snapshot); });
+    schedule_->advance();
+  }
+
+protected:
+  virtual void append(const JetSnapshot& snapshot) = 0;
+
+  std::shared_ptr<RunFile> file_;
+
+private:
+  std::optional<Schedule> schedule_;
+};
+
+/// Writes a part of a run file that has one row per `Row`.
 template <class Row>
-class Record final : public Observer {
+class Record final : public Recorder {
 public:
   Record(std::shared_ptr<RunFile> file, const char* part,
          std::vector<RecordColumn<Row>> columns, std::optional<double> interval = {},
          std::size_t rows_of_chunk = chunk_rows)
-      : file_(std::move(file))
+      : Recorder(std::move(file), interval)
       , columns_(std::move(columns)) {
-    EHDJET_EXPECTS(!interval || *interval > 0);
-    if (interval) schedule_.emplace(*interval);
     for (const auto& c : columns_)
       data_sets_.push_back(&file_->add_column(part, c, rows_of_chunk));
     file_->flush();
   }
 
-  [[nodiscard]] double next_time() const override {
-    return schedule_ ? schedule_->next() : Observer::next_time();
+  void deposit(const DepositedBead& bead) override {
+    if constexpr (std::is_same_v<Row, DepositedBead>)
+      file_->write([&] { append_row(bead); });
   }
-  void skip_to(double time) override {
-    if (schedule_) schedule_->skip_to(time);
+  void refined(const RefinementRecord& record) override {
+    if constexpr (std::is_same_v<Row, RefinementRecord>)
+      file_->write([&] { append_row(record); });
   }
-  void observe(const JetSnapshot& snapshot) override {
-    append(snapshot);
-    schedule_->advance();
-  }
-  void deposit(const DepositedBead& bead) override { append(bead); }
-  void refined(const RefinementRecord& record) override { append(record); }
 
 private:
-  template <class Given>
-  void append(const Given& row) {
-    if constexpr (std::is_same_v<Given, Row>)
-      file_->write([&] {
-        for (std::size_t i = 0; i < columns_.size(); ++i)
-          data_sets_[i]->append(columns_[i].value(row));
-      });
+  void append(const JetSnapshot& snapshot) override {
+    if constexpr (std::is_same_v<Row, JetSnapshot>) append_row(snapshot);
+  }
+  void append_row(const Row& row) {
+    for (std::size_t i = 0; i < columns_.size(); ++i)
+      data_sets_[i]->append(columns_[i].value(row));
   }
 
-  std::shared_ptr<RunFile> file_;
-  std::optional<Schedule> schedule_;
   std::vector<RecordColumn<Row>> columns_;
   std::vector<Column*> data_sets_;
 };
 
-/// All but the column of that name, if it is not `wanted`.
+/// Removes the column of that name unless it is `wanted`.
 template <class Row>
 std::vector<RecordColumn<Row>> with(bool wanted, std::string_view name,
                                     std::vector<RecordColumn<Row>> columns) {
@@ -82,14 +102,12 @@ void append(std::vector<RecordColumn<JetSnapshot>>& columns,
                        }});
 }
 
-/// One list of columns that are as long as the jet has beads, and where each frame ends in them.
-class Frames final : public Observer {
+/// Writes all beads of a frame one after the other, and where each frame ends.
+class Frames final : public Recorder {
 public:
   Frames(std::shared_ptr<RunFile> file, double interval, const BeadTable& table)
-      : file_(std::move(file))
-      , schedule_(interval)
+      : Recorder(std::move(file), interval)
       , columns_(frame_columns(table)) {
-    EHDJET_EXPECTS(interval > 0);
     for (const FrameColumn& c : columns_)
       data_sets_.push_back(&file_->add_column("beads", c, 4 * chunk_rows));
     time_ = &file_->add_column("frames", {"time", "s", "of each frame"}, chunk_rows);
@@ -102,28 +120,72 @@ public:
     file_->flush();
   }
 
-  [[nodiscard]] double next_time() const override { return schedule_.next(); }
-  void skip_to(double time) override { schedule_.skip_to(time); }
-
-  void observe(const JetSnapshot& snapshot) override {
+private:
+  void append(const JetSnapshot& snapshot) override {
     EHDJET_EXPECTS(snapshot.columns.beads == snapshot.jet.beads());
-    file_->write([&] {
-      for (std::size_t i = 0; i < columns_.size(); ++i)
-        data_sets_[i]->append(columns_[i].values(snapshot));
-      rows_ += snapshot.jet.beads();
-      time_->append(snapshot.time);
-      offset_->append(static_cast<double>(rows_)); // last: it makes the rows above a frame
-    });
-    schedule_.advance();
+    for (std::size_t i = 0; i < columns_.size(); ++i)
+      data_sets_[i]->append(columns_[i].values(snapshot));
+    rows_ += snapshot.jet.beads();
+    time_->append(snapshot.time);
+    offset_->append(static_cast<double>(rows_)); // last: it completes the frame
   }
 
-private:
-  std::shared_ptr<RunFile> file_;
-  Schedule schedule_;
   std::vector<FrameColumn> columns_;
   std::vector<Column*> data_sets_;
   Column *time_ = nullptr, *offset_ = nullptr;
   std::size_t rows_ = 0;
+};
+
+class ResolvingPower final : public Recorder {
+public:
+  ResolvingPower(std::shared_ptr<RunFile> file, double interval, double link_length)
+      : Recorder(std::move(file), interval)
+      , link_length_(link_length)
+      , time_(add({"time", "s", "of each sample"}, chunk_rows))
+      , power_(add(
+            {"r", "1", "R = link_length/l at all values of lambda, sample after sample"},
+            places * 64)) {
+    EHDJET_EXPECTS(link_length > 0);
+    Column& lambda =
+        add({"lambda", "1", "arc length from the nozzle over the jet's"}, places);
+    file_->write([&] {
+      for (std::size_t i = 0; i < places; ++i) lambda.append(at(i));
+    });
+    file_->flush();
+  }
+
+private:
+  static constexpr std::size_t places = 101; // lambda = 0, 0.01, ... 1
+
+  Column& add(const ColumnInfo& info, std::size_t rows_of_chunk) {
+    return file_->add_column("resolving_power", info, rows_of_chunk);
+  }
+  static double at(std::size_t place) { return static_cast<double>(place) / (places - 1); }
+
+  // Each lambda gets R of the link in which it lies. The link across an embryo is one link.
+  void append(const JetSnapshot& snapshot) override {
+    const auto r = snapshot.columns.position();
+    const std::size_t first = snapshot.jet.first(), beads = snapshot.jet.beads();
+    length_.resize(beads);
+    double total = 0;
+    for (std::size_t k = first; k < beads; ++k) {
+      length_[k] = link_length(r, first, k);
+      total += length_[k];
+    }
+    std::array<double, places> row{};
+    std::size_t k = first;
+    double end = length_[first];
+    for (std::size_t i = 0; i < places; ++i) {
+      while (k + 1 < beads && end < at(i) * total) end += length_[++k];
+      row[i] = link_length_ / length_[k];
+    }
+    power_.append(std::span<const double>(row));
+    time_.append(snapshot.time); // last: it completes the sample
+  }
+
+  double link_length_; // [m]
+  std::vector<double> length_;
+  Column &time_, &power_;
 };
 
 class Checkpoints final : public Observer {
@@ -140,7 +202,7 @@ private:
 
 std::unique_ptr<Observer> record_observables(std::shared_ptr<RunFile> file, double interval,
                                              bool with_coulomb_error,
-                                             std::shared_ptr<Accounts> further) {
+                                             const std::shared_ptr<Accounts>& further) {
   auto columns = with(with_coulomb_error, "coulomb_error", observable_columns());
   if (further) append(columns, further);
   return std::make_unique<Record<JetSnapshot>>(std::move(file), "observables",
@@ -167,7 +229,7 @@ std::unique_ptr<Observer> record_refinements(std::shared_ptr<RunFile> file,
 }
 
 std::unique_ptr<Observer> record_budget(std::shared_ptr<RunFile> file, double interval,
-                                        std::shared_ptr<Accounts> accounts) {
+                                        const std::shared_ptr<Accounts>& accounts) {
   std::vector<RecordColumn<JetSnapshot>> columns{
       {{"time", "s", "of each row"}, [](const JetSnapshot& s) { return s.time; }}};
   append(columns, accounts);
@@ -177,6 +239,11 @@ std::unique_ptr<Observer> record_budget(std::shared_ptr<RunFile> file, double in
   file->describe("budget", "columns", names);
   return std::make_unique<Record<JetSnapshot>>(std::move(file), "budget",
                                                std::move(columns), interval);
+}
+
+std::unique_ptr<Observer> record_resolving_power(std::shared_ptr<RunFile> file,
+                                                 double interval, double link_length) {
+  return std::make_unique<ResolvingPower>(std::move(file), interval, link_length);
 }
 
 std::unique_ptr<Observer> record_checkpoints(std::shared_ptr<RunFile> file) {

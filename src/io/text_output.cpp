@@ -8,13 +8,16 @@
 
 namespace ehdjet {
 
-TextOutput::TextOutput(const std::filesystem::path& path, bool overwrite)
-    : path_(path) {
+void refuse_existing(const std::filesystem::path& path, bool overwrite) {
   std::error_code ignored;
-  if (!overwrite && std::filesystem::exists(path, ignored)) {
+  if (!overwrite && std::filesystem::exists(path, ignored))
     throw InputError(path.string()
                      + " exists: choose another name with -o or overwrite it with --force");
-  }
+}
+
+TextOutput::TextOutput(const std::filesystem::path& path, bool overwrite)
+    : path_(path) {
+  refuse_existing(path, overwrite);
 }
 
 void TextOutput::close() {
@@ -26,9 +29,8 @@ void TextOutput::close() {
 void TextOutput::drain() {
   if (!file_ && !path_.empty()) {
     file_.reset(std::fopen(path_.c_str(), "wb"));
-    if (!file_) {
+    if (!file_)
       throw InputError("cannot create " + path_.string() + ": " + std::strerror(errno));
-    }
   }
   std::FILE* to = file_ ? file_.get() : stdout;
   if (std::fwrite(text_.data(), 1, text_.size(), to) != text_.size()

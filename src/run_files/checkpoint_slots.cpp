@@ -20,27 +20,13 @@ Handle open_group(hid_t parent, const char* name) {
   return {H5Gopen2(parent, name, H5P_DEFAULT), H5Gclose};
 }
 
-// Not compressed: a chunk that changes stays in its place.
-Handle create_list(hid_t group, const char* name, hid_t type) {
-  const hsize_t none = 0, unlimited = H5S_UNLIMITED;
-  const Handle space(H5Screate_simple(1, &none, &unlimited), H5Sclose);
-  const Handle properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
-  check(H5Pset_chunk(properties, 1, &chunk_rows));
-  check(H5Pset_obj_track_times(properties, false));
-  return {H5Dcreate2(group, name, type, space, H5P_DEFAULT, properties, H5P_DEFAULT),
-          H5Dclose};
-}
-
-// The data set may stay longer than that: what it once had is not given back.
+// The data set never becomes shorter, because HDF5 would not reuse the space.
 template <class T>
 void write_list(hid_t group, const char* name, const std::vector<T>& values) {
   const Handle dataset(H5Dopen2(group, name, H5P_DEFAULT), H5Dclose);
-  const hsize_t none = 0, rows = values.size(), extent = std::max(length(dataset), rows);
+  const hsize_t rows = values.size(), extent = std::max(length(dataset), rows);
   check(H5Dset_extent(dataset, &extent));
-  const Handle space(H5Dget_space(dataset), H5Sclose);
-  const Handle memory(H5Screate_simple(1, &rows, nullptr), H5Sclose);
-  check(H5Sselect_hyperslab(space, H5S_SELECT_SET, &none, nullptr, &rows, nullptr));
-  check(H5Dwrite(dataset, native(T{}), memory, space, H5P_DEFAULT, values.data()));
+  write_rows(dataset, native(T{}), 0, rows, values.data());
 }
 
 template <class T>
@@ -55,10 +41,9 @@ void create_slots(hid_t file, const Checkpoint& checkpoint) {
   write_text(group, "names", names);
   for (const std::uint64_t slot : {0U, 1U}) {
     const Handle part = create_group(group, slot_name(slot).c_str());
-    for (const char* name : {"offset", "numbers"})
-      create_list(part, name,
-                  std::string(name) == "offset" ? native(std::uint64_t{})
-                                                : native(double{}));
+    // Without compression a chunk keeps its place in the file when it changes.
+    create_rows(part, "offset", native(std::uint64_t{}), chunk_rows, Packing::none);
+    create_rows(part, "numbers", native(double{}), chunk_rows, Packing::none);
   }
 }
 

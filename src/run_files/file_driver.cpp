@@ -8,15 +8,13 @@
 #include <new>
 #include <sys/stat.h>
 #include <unistd.h>
-#include <utility>
 
 namespace ehdjet::hdf5 {
-
 namespace {
 
 constexpr hsize_t page = 4096;
 
-// First address from `address` on where `size` bytes cross no page boundary, if they can.
+// The first address >= `address` where `size` bytes cross no page boundary, if they fit in a page.
 haddr_t fit(haddr_t address, hsize_t size) {
   const bool crosses = size <= page && address % page + size > page;
   return crosses ? (address / page + 1) * page : address;
@@ -26,27 +24,27 @@ haddr_t fit(haddr_t address, hsize_t size) {
 
 void FreeSpace::add(haddr_t address, hsize_t size) {
   if (size == 0) return;
-  auto next = stretches_.upper_bound(address);
-  if (next != stretches_.begin()) {
+  auto next = parts_.upper_bound(address);
+  if (next != parts_.begin()) {
     const auto previous = std::prev(next);
     if (previous->first + previous->second == address) {
       address = previous->first, size += previous->second;
-      stretches_.erase(previous);
+      parts_.erase(previous);
     }
   }
-  if (next != stretches_.end() && next->first == address + size) {
+  if (next != parts_.end() && next->first == address + size) {
     size += next->second;
-    stretches_.erase(next);
+    parts_.erase(next);
   }
-  stretches_.emplace(address, size);
+  parts_.emplace(address, size);
 }
 
 haddr_t FreeSpace::take(hsize_t size) {
-  for (auto it = stretches_.begin(); it != stretches_.end(); ++it) {
+  for (auto it = parts_.begin(); it != parts_.end(); ++it) {
     const auto [begin, length] = *it;
     const haddr_t address = fit(begin, size);
     if (address + size > begin + length) continue;
-    stretches_.erase(it);
+    parts_.erase(it);
     add(begin, address - begin);
     add(address + size, begin + length - address - size);
     return address;
@@ -54,9 +52,10 @@ haddr_t FreeSpace::take(hsize_t size) {
   return HADDR_UNDEF;
 }
 
-// Place in the order of a commit. A chunk index is a tree whose nodes begin with "TREE", node
-// type, level: a node is split by moving entries to a new sibling, so a parent that already
-// knows both is right with either state of the child, the other way round entries are missing.
+// Position in the order of a commit. A chunk index is a tree whose nodes begin with "TREE", node
+// type, level. HDF5 splits a node by moving entries to a new sibling. If the parent is written
+// first, it refers to both nodes, and all entries are found in either state of the child. If the
+// child were written first, entries would be missing.
 int FileDriver::Rewrite::rank() const {
   switch (type) {
   case H5FD_MEM_SUPER:
@@ -108,8 +107,7 @@ bool FileDriver::read(haddr_t address, std::size_t size, unsigned char* to) {
     if (n == 0) break;
     done += static_cast<std::size_t>(n);
   }
-  std::fill(to + done, to + size,
-            static_cast<unsigned char>(0)); // beyond the end, as HDF5 expects
+  std::memset(to + done, 0, size - done); // HDF5 expects zeros beyond the end
   for (const Rewrite& held : rewrites_) {
     const haddr_t begin = std::max(address, held.address),
                   end = std::min(address + size, held.end());
@@ -122,7 +120,7 @@ bool FileDriver::read(haddr_t address, std::size_t size, unsigned char* to) {
 
 bool FileDriver::write(H5FD_mem_t type, haddr_t address, std::size_t size,
                        const unsigned char* from) {
-  if (error_ != 0) return true; // so that closing an abandoned file is quiet
+  if (error_ != 0) return true; // closing an abandoned file then reports no error
   if (is_new(address, size)) return write_now(address, size, from);
   std::erase_if(rewrites_, [&](const Rewrite& held) {
     return address <= held.address && held.end() <= address + size;
@@ -146,23 +144,17 @@ bool FileDriver::write_now(haddr_t address, std::size_t size, const unsigned cha
   return true;
 }
 
-bool FileDriver::set_length(haddr_t length) {
-  if (::ftruncate(descriptor_, static_cast<off_t>(length)) == 0) return true;
-  abandon(errno);
-  return false;
-}
-
 void FileDriver::commit() {
+  if (error_ != 0) return;
   struct stat status {};
-  // A file shorter than its superblock says counts as truncated, so the length goes first.
-  const bool is_short =
-      ::fstat(descriptor_, &status) == 0 && static_cast<haddr_t>(status.st_size) < end_;
-  if (error_ != 0 || (is_short && !set_length(end_))) return;
+  // The length is set first: a file shorter than its superblock says counts as truncated.
+  if (::fstat(descriptor_, &status) == 0 && static_cast<haddr_t>(status.st_size) < end_
+      && ::ftruncate(descriptor_, static_cast<off_t>(end_)) != 0)
+    return abandon(errno);
   std::stable_sort(rewrites_.begin(), rewrites_.end(),
                    [](const Rewrite& a, const Rewrite& b) { return a.rank() < b.rank(); });
-  for (const Rewrite& held : rewrites_) {
+  for (const Rewrite& held : rewrites_)
     if (!write_now(held.address, held.bytes.size(), held.bytes.data())) return;
-  }
   rewrites_.clear();
   new_.clear();
   for (const auto& [address, size] : old_) free_.add(address, size);
@@ -175,7 +167,7 @@ void FileDriver::abandon(int error) {
   if (error_ == 0) error_ = error;
 }
 
-// HDF5 is C: no exception may pass through it.
+// The functions that HDF5 calls. They must not throw, because HDF5 is written in C.
 struct FileDriver::Callbacks {
   static FileDriver& self(H5FD_t* file) { return *static_cast<FileDriver*>(file); }
   static const FileDriver& self(const H5FD_t* file) {
@@ -210,15 +202,15 @@ struct FileDriver::Callbacks {
     return ok && closed ? 0 : -1;
   }
   static herr_t query(const H5FD_t*, unsigned long* flags) noexcept {
-    *flags =
-        H5FD_FEAT_DEFAULT_VFD_COMPATIBLE; // and no gathering of writes: each keeps its type
+    // No flag lets HDF5 combine writes, so that each write keeps its type.
+    *flags = H5FD_FEAT_DEFAULT_VFD_COMPATIBLE;
     return 0;
   }
   static haddr_t allocate(H5FD_t* file, H5FD_mem_t, hid_t, hsize_t size) noexcept {
     return self(file).allocate(size);
   }
   static herr_t release(H5FD_t*, H5FD_mem_t, hid_t, haddr_t, hsize_t) noexcept {
-    return 0; // HDF5 reports only what lies at the end; see FileDriver::release
+    return 0; // HDF5 reports only space at the end of the file; see FileDriver::release
   }
   static haddr_t allocated_end(const H5FD_t* file, H5FD_mem_t) noexcept {
     return self(file).end_;
@@ -254,11 +246,11 @@ hid_t FileDriver::access_properties() {
     H5FD_class_t c{};
 #if H5_VERSION_GE(1, 13, 2)
     c.version = H5FD_CLASS_VERSION,
-    c.value = static_cast<H5FD_class_value_t>(512); // of our own
+    c.value = static_cast<H5FD_class_value_t>(512); // from the range for private drivers
 #endif
     c.name = "ehdjet_transactions";
     c.maxaddr = (haddr_t{1} << 62U) - 1;
-    c.fc_degree = H5F_CLOSE_STRONG; // an abandoned file closes whatever is still open in it
+    c.fc_degree = H5F_CLOSE_STRONG; // closing the file closes all objects in it
     c.open = Callbacks::open, c.close = Callbacks::close, c.query = Callbacks::query;
     c.alloc = Callbacks::allocate, c.free = Callbacks::release;
     c.get_eoa = Callbacks::allocated_end, c.set_eoa = Callbacks::set_allocated_end;
@@ -269,7 +261,8 @@ hid_t FileDriver::access_properties() {
   static const hid_t driver = H5FDregister(&callbacks);
   const hid_t properties = H5Pcreate(H5P_FILE_ACCESS);
   H5Pset_driver(properties, driver, nullptr);
-  // Each request for space is seen as it is, and the metadata have checksums and no symbol tables.
+  // HDF5 passes each request for space on unchanged. Metadata get checksums instead of symbol
+  // tables.
   H5Pset_meta_block_size(properties, 0);
   H5Pset_small_data_block_size(properties, 0);
   H5Pset_sieve_buf_size(properties, 0);

@@ -3,7 +3,6 @@
 #include <memory>
 
 namespace ehdjet::hdf5 {
-
 namespace {
 
 herr_t keep_description(unsigned depth, const H5E_error2_t* error, void* text) {
@@ -24,14 +23,29 @@ void write_attribute(hid_t object, const char* name, hid_t type, const void* val
   check(H5Awrite(attribute, type, value));
 }
 
-struct FreeText {
-  void operator()(char* text) const { H5free_memory(text); }
+// `read` stores a text that HDF5 has allocated.
+template <class Read>
+std::string text_from(const Read& read) {
+  char* text = nullptr;
+  check(read(&text));
+  const std::unique_ptr<char, herr_t (*)(void*)> owner(text, H5free_memory);
+  return text != nullptr ? text : "";
+}
+
+// The part of a one-dimensional data set that is read or written.
+struct Rows {
+  Handle file, memory;
+  Rows(hid_t dataset, hsize_t first, hsize_t rows)
+      : file(H5Dget_space(dataset), H5Sclose)
+      , memory(H5Screate_simple(1, &rows, nullptr), H5Sclose) {
+    check(H5Sselect_hyperslab(file, H5S_SELECT_SET, &first, nullptr, &rows, nullptr));
+  }
 };
 
 } // namespace
 
 void fail() {
-  std::string description = "unknown HDF5 error"; // of the innermost call: the cause
+  std::string description = "unknown HDF5 error"; // the innermost call names the cause
   H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, keep_description, &description);
   throw Failure(description);
 }
@@ -58,11 +72,14 @@ Handle string_type() {
   return type;
 }
 
+void keep_in_one_record(hid_t creation_properties) {
+  check(H5Pset_link_phase_change(creation_properties, 64, 32));
+  check(H5Pset_attr_phase_change(creation_properties, 64, 32));
+}
+
 Handle create_group(hid_t parent, const char* name) {
   const Handle properties(H5Pcreate(H5P_GROUP_CREATE), H5Pclose);
-  check(
-      H5Pset_link_phase_change(properties, 64, 32)); // one record, not a heap and an index
-  check(H5Pset_attr_phase_change(properties, 64, 32));
+  keep_in_one_record(properties);
   return {H5Gcreate2(parent, name, H5P_DEFAULT, properties, H5P_DEFAULT), H5Gclose};
 }
 
@@ -96,10 +113,7 @@ bool has_attribute(hid_t object, const char* name) {
 
 std::string read_text_attribute(hid_t object, const char* name) {
   const Handle attribute(H5Aopen(object, name, H5P_DEFAULT), H5Aclose);
-  char* text = nullptr;
-  check(H5Aread(attribute, string_type(), &text));
-  const std::unique_ptr<char, FreeText> owner(text);
-  return text != nullptr ? text : "";
+  return text_from([&](char** text) { return H5Aread(attribute, string_type(), text); });
 }
 
 std::uint64_t read_count_attribute(hid_t object, const char* name) {
@@ -111,20 +125,25 @@ std::uint64_t read_count_attribute(hid_t object, const char* name) {
 
 std::string read_text(hid_t group, const char* name) {
   const Handle dataset(H5Dopen2(group, name, H5P_DEFAULT), H5Dclose);
-  char* text = nullptr;
-  check(H5Dread(dataset, string_type(), H5S_ALL, H5S_ALL, H5P_DEFAULT, &text));
-  const std::unique_ptr<char, FreeText> owner(text);
-  return text != nullptr ? text : "";
+  return text_from([&](char** text) {
+    return H5Dread(dataset, string_type(), H5S_ALL, H5S_ALL, H5P_DEFAULT, text);
+  });
 }
 
-hid_t native(double) {
-  return H5T_NATIVE_DOUBLE;
-}
-hid_t native(std::uint64_t) {
-  return H5T_NATIVE_UINT64;
-}
-hid_t native(std::uint8_t) {
-  return H5T_NATIVE_UINT8;
+Handle create_rows(hid_t group, const char* name, hid_t type, hsize_t chunk_rows,
+                   Packing packing) {
+  const hsize_t none = 0, unlimited = H5S_UNLIMITED;
+  const Handle space(H5Screate_simple(1, &none, &unlimited), H5Sclose);
+  const Handle properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+  const Handle access(H5Pcreate(H5P_DATASET_ACCESS), H5Pclose);
+  check(H5Pset_chunk(properties, 1, &chunk_rows));
+  check(H5Pset_obj_track_times(properties, false)); // the same run gives the same bytes
+  if (packing == Packing::deflate) {
+    check(H5Pset_shuffle(properties));
+    check(H5Pset_deflate(properties, 4));
+    check(H5Pset_chunk_cache(access, 0, 0, 1)); // Column keeps the chunk in memory
+  }
+  return {H5Dcreate2(group, name, type, space, H5P_DEFAULT, properties, access), H5Dclose};
 }
 
 hsize_t length(hid_t dataset) {
@@ -132,14 +151,18 @@ hsize_t length(hid_t dataset) {
   return static_cast<hsize_t>(check(H5Sget_simple_extent_npoints(space)));
 }
 
+void write_rows(hid_t dataset, hid_t type, hsize_t first, hsize_t rows,
+                const void* values) {
+  const Rows part(dataset, first, rows);
+  check(H5Dwrite(dataset, type, part.memory, part.file, H5P_DEFAULT, values));
+}
+
 template <class T>
 std::vector<T> read_rows(hid_t dataset, hsize_t first, hsize_t rows) {
   std::vector<T> values(rows);
   if (rows == 0) return values;
-  const Handle space(H5Dget_space(dataset), H5Sclose);
-  const Handle memory(H5Screate_simple(1, &rows, nullptr), H5Sclose);
-  check(H5Sselect_hyperslab(space, H5S_SELECT_SET, &first, nullptr, &rows, nullptr));
-  check(H5Dread(dataset, native(T{}), memory, space, H5P_DEFAULT, values.data()));
+  const Rows part(dataset, first, rows);
+  check(H5Dread(dataset, native(T{}), part.memory, part.file, H5P_DEFAULT, values.data()));
   return values;
 }
 template std::vector<double> read_rows(hid_t, hsize_t, hsize_t);

@@ -3,7 +3,6 @@
 #include <hdf5.h>
 
 #include <cstdint>
-#include <filesystem>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -11,7 +10,7 @@
 
 namespace ehdjet::hdf5 {
 
-/// A call of the HDF5 library failed; the classes that own a file say so in their own words.
+/// A call of the HDF5 library failed. The classes that own a file turn it into an Error.
 class Failure : public std::runtime_error {
 public:
   using std::runtime_error::runtime_error;
@@ -22,7 +21,7 @@ class Handle {
 public:
   using Close = herr_t (*)(hid_t);
   Handle() = default;
-  /// Takes what an H5Xopen or H5Xcreate returned. errors : Failure if that failed
+  /// `id`: the result of an H5Xopen or H5Xcreate. errors : Failure if that call failed
   Handle(hid_t id, Close close);
   ~Handle() { reset(); }
   Handle(Handle&& other) noexcept
@@ -43,37 +42,51 @@ private:
   Close close_ = nullptr;
 };
 
-[[noreturn]] void fail(); ///< Failure in the library's own words
+[[noreturn]] void fail(); ///< throws a Failure with the message of the library
 template <class Result>
 Result check(Result result) {
   if (result < 0) fail();
   return result;
 }
 
-/// Keeps the library from printing its error stack; an error is reported once, by us.
+/// Stops the library from printing its error stack. ehdjet reports each error itself.
 void silence_errors();
 
 Handle string_type();
+/// Makes a file or group keep its links and attributes in one record, without a heap and an index.
+void keep_in_one_record(hid_t creation_properties);
 Handle create_group(hid_t parent, const char* name);
 bool has(hid_t parent, const char* name);
 
 void write_attribute(hid_t object, const char* name, const std::string& value);
 void write_attribute(hid_t object, const char* name, double value);
 void write_attribute(hid_t object, const char* name, std::uint64_t value);
-void write_text(hid_t group, const char* name,
-                const std::string& text); ///< a scalar data set
+/// Creates a scalar data set.
+void write_text(hid_t group, const char* name, const std::string& text);
 
 bool has_attribute(hid_t object, const char* name);
 std::string read_text_attribute(hid_t object, const char* name);
 std::uint64_t read_count_attribute(hid_t object, const char* name);
 std::string read_text(hid_t group, const char* name);
 
-hid_t native(double);
-hid_t native(std::uint64_t);
-hid_t native(std::uint8_t);
+/// The HDF5 type of a number in memory.
+inline hid_t native(double) {
+  return H5T_NATIVE_DOUBLE;
+}
+inline hid_t native(std::uint64_t) {
+  return H5T_NATIVE_UINT64;
+}
+inline hid_t native(std::uint8_t) {
+  return H5T_NATIVE_UINT8;
+}
 
+/// Creates an empty one-dimensional data set that can grow.
+enum class Packing { none, deflate };
+Handle create_rows(hid_t group, const char* name, hid_t type, hsize_t chunk_rows,
+                   Packing packing);
 hsize_t length(hid_t dataset);
-/// Rows first .. first + rows - 1 of a one-dimensional data set.
+/// Writes or reads the rows first .. first + rows - 1, which the data set must have.
+void write_rows(hid_t dataset, hid_t type, hsize_t first, hsize_t rows, const void* values);
 template <class T>
 std::vector<T> read_rows(hid_t dataset, hsize_t first, hsize_t rows);
 

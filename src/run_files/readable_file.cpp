@@ -8,7 +8,7 @@
 namespace ehdjet {
 namespace {
 
-/// Parts of a run file, what they are called in messages, and what in a scene asks for them.
+/// The parts of a run file, their names in messages, and the keys of a scene that ask for them.
 struct Part {
   const char *group, *meaning, *remedy;
 };
@@ -39,17 +39,13 @@ ReadableFile::ReadableFile(const std::filesystem::path& path)
   try {
     file_ = {H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose};
   } catch (const hdf5::Failure& failure) {
-    reject(fmt::format("is no readable HDF5 file, it is damaged or truncated ({})",
+    reject(fmt::format("is no readable HDF5 file: it is damaged or truncated ({})",
                        failure.what()));
   }
 }
 
 void ReadableFile::reject(const std::string& reason) const {
   throw InputError(path_.string() + " " + reason);
-}
-
-bool ReadableFile::has(const std::string& name) const {
-  return hdf5::has(file_, name.c_str());
 }
 
 void ReadableFile::require(const std::string& part) const {
@@ -60,32 +56,19 @@ void ReadableFile::require(const std::string& part) const {
     reject(fmt::format("has no {}: set {} in the scene", known->meaning, known->remedy));
 }
 
-hid_t ReadableFile::data_set(const std::string& name) {
-  auto found = data_sets_.find(name);
-  if (found == data_sets_.end()) {
-    if (!has(name.substr(0, name.find('/'))) || !has(name))
-      reject(fmt::format("has no dataset /{}", name));
-    hdf5::Handle opened(H5Dopen2(file_, name.c_str(), H5P_DEFAULT), H5Dclose);
-    const hdf5::Handle space(H5Dget_space(opened), H5Sclose);
-    if (H5Sget_simple_extent_ndims(space) != 1)
-      reject(fmt::format("/{} is no flat array", name));
-    found = data_sets_.emplace(name, std::move(opened)).first;
-  }
-  return found->second;
-}
-
-// Other programs that write such files need not say their units.
-std::string ReadableFile::unit(const std::string& name) {
-  auto found = units_.find(name);
-  if (found == units_.end()) {
-    const hid_t set = data_set(name);
-    found = units_
-                .emplace(name, hdf5::has_attribute(set, "unit")
-                                   ? hdf5::read_text_attribute(set, "unit")
-                                   : "1")
-                .first;
-  }
-  return found->second;
+const ReadableFile::DataSet& ReadableFile::data_set(const std::string& name) {
+  if (const auto found = data_sets_.find(name); found != data_sets_.end())
+    return found->second;
+  if (!has(name.substr(0, name.find('/'))) || !has(name))
+    reject(fmt::format("has no dataset /{}", name));
+  hdf5::Handle opened(H5Dopen2(file_, name.c_str(), H5P_DEFAULT), H5Dclose);
+  const hdf5::Handle space(H5Dget_space(opened), H5Sclose);
+  if (H5Sget_simple_extent_ndims(space) != 1)
+    reject(fmt::format("/{} is not one-dimensional", name));
+  // Files of other programs need not have units.
+  std::string unit =
+      hdf5::has_attribute(opened, "unit") ? hdf5::read_text_attribute(opened, "unit") : "1";
+  return data_sets_[name] = {std::move(opened), std::move(unit)};
 }
 
 std::vector<std::string> ReadableFile::names_in(const std::string& group) const {
@@ -109,7 +92,7 @@ std::vector<RunTable::Column> ReadableFile::columns(const std::string& group,
   std::vector<RunTable::Column> all;
   for (const std::string& name : names) {
     const std::string path = fmt::format("{}/{}", group, name);
-    all.push_back({name, unit(path), rows<double>(path, first, count)});
+    all.push_back({name, data_set(path).unit, rows<double>(path, first, count)});
   }
   return all;
 }

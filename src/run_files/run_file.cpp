@@ -10,7 +10,6 @@
 #include <unistd.h>
 
 #include "checkpoint_slots.hpp"
-#include "data_set.hpp"
 #include "file_driver.hpp"
 
 namespace ehdjet {
@@ -20,8 +19,8 @@ using hdf5::Handle;
 
 namespace {
 
-// The file grows beside its final name and takes that name once it is complete enough to be
-// opened: whatever goes wrong before leaves an older file of that name as it was.
+// The file is created under a temporary name and gets its final name as soon as it can be opened.
+// If something fails before that, an older file of the final name is not changed.
 class TemporaryFile {
 public:
   explicit TemporaryFile(const fs::path& target)
@@ -31,10 +30,9 @@ public:
                             static_cast<long>(::getpid()))) {
     const int file =
         ::open(path_.c_str(), O_CREAT | O_EXCL | O_RDWR | O_CLOEXEC, 0666); // NOLINT
-    if (file < 0) {
+    if (file < 0)
       throw InputError(fmt::format("cannot create {}: {}. Choose another name with -o",
                                    target.string(), std::strerror(errno)));
-    }
     ::close(file);
   }
   ~TemporaryFile() {
@@ -59,37 +57,32 @@ private:
   bool renamed_ = false;
 };
 
-// Where the file will really be, if it may be there.
+// The path of the file without links. Throws if the file may not be created there.
 fs::path checked(const fs::path& path, bool overwrite) {
   std::error_code ignored;
   if (fs::exists(path, ignored)) {
     const std::string name = path.string();
     if (!fs::is_regular_file(path))
-      throw InputError(name + " is no regular file: choose another name with -o");
-    if (!overwrite) {
+      throw InputError(name + " is not a regular file: choose another name with -o");
+    if (!overwrite)
       throw InputError(
           name + " exists: choose another name with -o or overwrite it with --force");
-    }
-    if (::access(path.c_str(), W_OK) != 0) {
+    if (::access(path.c_str(), W_OK) != 0)
       throw InputError(fmt::format("cannot overwrite {}: {}", name, std::strerror(errno)));
-    }
-    return fs::canonical(path); // through links
+    return fs::canonical(path);
   }
   fs::path absolute = fs::absolute(path);
-  if (!fs::is_directory(absolute.parent_path(), ignored)) {
+  if (!fs::is_directory(absolute.parent_path(), ignored))
     throw InputError(fmt::format("cannot create {}: there is no folder {}", path.string(),
                                  absolute.parent_path().string()));
-  }
   return absolute;
 }
 
 Handle file_creation() {
   Handle properties(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
-  // HDF5 would reuse freed space at once, while the last flush still needs it; the driver does not.
+  // The driver manages free space: HDF5 would reuse space that the last flush still needs.
   hdf5::check(H5Pset_file_space_strategy(properties, H5F_FSPACE_STRATEGY_NONE, false, 1));
-  hdf5::check(
-      H5Pset_link_phase_change(properties, 64, 32)); // one record, not a heap and an index
-  hdf5::check(H5Pset_attr_phase_change(properties, 64, 32));
+  hdf5::keep_in_one_record(properties);
   return properties;
 }
 
@@ -116,20 +109,19 @@ void write_statistics(hid_t file, const RunStatistics& s) {
 
 void write_ledger(hid_t file, const Ledger& ledger) {
   const Handle group = hdf5::create_group(file, "ledger");
-  const auto write = [&](const char* name, double value) {
-    hdf5::write_attribute(group, name, value);
-  };
   hdf5::write_attribute(group, "inserted_beads", ledger.inserted_beads);
   hdf5::write_attribute(group, "removed_beads", ledger.removed_beads);
-  write("inserted_mass", ledger.inserted_mass);
-  write("removed_mass", ledger.removed_mass);
-  write("inserted_charge", ledger.inserted_charge);
-  write("removed_charge", ledger.removed_charge);
-  write("inserted_volume", ledger.inserted_volume);
-  write("removed_volume", ledger.removed_volume);
-  write("release_speed", ledger.release_speed);
-  write("impact_speed", ledger.impact_speed);
-  write("collector_radius", ledger.collector_radius);
+  const std::pair<const char*, double> numbers[] = {
+      {"inserted_mass", ledger.inserted_mass},
+      {"removed_mass", ledger.removed_mass},
+      {"inserted_charge", ledger.inserted_charge},
+      {"removed_charge", ledger.removed_charge},
+      {"inserted_volume", ledger.inserted_volume},
+      {"removed_volume", ledger.removed_volume},
+      {"release_speed", ledger.release_speed},
+      {"impact_speed", ledger.impact_speed},
+      {"collector_radius", ledger.collector_radius}};
+  for (const auto& [name, value] : numbers) hdf5::write_attribute(group, name, value);
 }
 
 Handle group_in(hid_t file, const std::string& name) {
@@ -145,15 +137,23 @@ void write_status(hid_t file, const std::string& status, const std::string& mess
 
 } // namespace
 
-template <class Action>
-void RunFile::guard(const Action& action) {
-  if (broken()) throw_error();
+void RunFile::guard(const std::function<void()>& action) {
+  const auto check = [&] {
+    if (broken())
+      throw RunError(fmt::format("cannot write {}: {}. It is readable up to the last flush",
+                                 path_.string(),
+                                 std::strerror(hdf5::FileDriver::of(*file_).error())));
+  };
+  check();
   try {
     action();
   } catch (const hdf5::Failure& failure) {
-    abandon(failure);
+    check();
+    // The disk has not failed: the message of HDF5 is reported.
+    if (*file_ >= 0) hdf5::FileDriver::of(*file_).abandon(EIO);
+    throw RunError(fmt::format("cannot write {}: {}", path_.string(), failure.what()));
   }
-  if (broken()) throw_error();
+  check();
 }
 
 RunFile::RunFile(const fs::path& path, bool overwrite, const Provenance& provenance,
@@ -167,7 +167,15 @@ RunFile::RunFile(const fs::path& path, bool overwrite, const Provenance& provena
     *file_ = {
         H5Fcreate(temporary.path().c_str(), H5F_ACC_TRUNC, file_creation(), file_access()),
         H5Fclose};
-    create(provenance);
+    hdf5::write_attribute(*file_, "format", std::string("ehdjet run"));
+    hdf5::write_attribute(*file_, "format_version", std::uint64_t{1});
+    write_status(*file_, "running", "");
+    hdf5::write_attribute(*file_, "scene_file", provenance.scene_file);
+    for (const auto& [name, value] : provenance.environment)
+      hdf5::write_attribute(*file_, name.c_str(), value);
+    const Handle scene = hdf5::create_group(*file_, "scene");
+    hdf5::write_text(scene, "given", provenance.scene_given);
+    hdf5::write_text(scene, "resolved", provenance.scene_resolved);
   });
   flush();
   temporary.rename();
@@ -177,31 +185,14 @@ RunFile::~RunFile() {
   if (*file_ < 0) return;
   try {
     if (!broken()) flush();
-  } catch (const Error&) { // nobody left to tell; what was flushed before is safe
+  } catch (const Error&) { // a destructor cannot report it; the last flush stays readable
   }
   close();
 }
 
-void RunFile::create(const Provenance& provenance) {
-  hdf5::write_attribute(*file_, "format", std::string("ehdjet run"));
-  hdf5::write_attribute(*file_, "format_version", std::uint64_t{1});
-  write_status(*file_, "running", "");
-  hdf5::write_attribute(*file_, "scene_file", provenance.scene_file);
-  for (const auto& [name, value] : provenance.environment) {
-    hdf5::write_attribute(*file_, name.c_str(), value);
-  }
-  const Handle scene = hdf5::create_group(*file_, "scene");
-  hdf5::write_text(scene, "given", provenance.scene_given);
-  hdf5::write_text(scene, "resolved", provenance.scene_resolved);
-}
-
 Column& RunFile::add_column(const std::string& group, const ColumnInfo& info,
                             std::size_t chunk_rows) {
-  guard([&] {
-    columns_.emplace_back(
-        Column::DataSet::create(group_in(*file_, group), info, chunk_rows), info.type,
-        chunk_rows);
-  });
+  guard([&] { columns_.emplace_back(group_in(*file_, group), info, chunk_rows); });
   return columns_.back();
 }
 
@@ -211,7 +202,7 @@ void RunFile::describe(const std::string& group, const char* attribute,
 }
 
 void RunFile::write(const std::function<void()>& append) {
-  EHDJET_EXPECTS(*file_ >= 0); // not finished
+  EHDJET_EXPECTS(*file_ >= 0); // not finished yet
   guard(append);
   if (std::chrono::steady_clock::now() - flushed_ >= flush_interval_) flush();
 }
@@ -225,7 +216,7 @@ void RunFile::flush() {
   flushed_ = std::chrono::steady_clock::now();
 }
 
-// Two commits: at no time does the file name a slot that is not complete.
+// The slot is committed before it is made current: the current slot is always complete.
 void RunFile::keep(const Checkpoint& checkpoint) {
   std::uint64_t slot = 0;
   guard([&] { slot = hdf5::fill_free_slot(*file_, checkpoint); });
@@ -237,8 +228,8 @@ void RunFile::keep(const Checkpoint& checkpoint) {
 void RunFile::finish(const std::string& status, const std::string& message,
                      const RunStatistics& statistics, const Ledger& ledger,
                      const std::map<std::string, std::string>& notes) {
-  EHDJET_EXPECTS(*file_ >= 0); // once
-  const auto last_words = [&] {
+  EHDJET_EXPECTS(*file_ >= 0); // not finished yet
+  const auto write_end = [&] {
     write_status(*file_, status, message);
     for (const auto& [name, value] : notes)
       hdf5::write_attribute(*file_, name.c_str(), value);
@@ -246,21 +237,20 @@ void RunFile::finish(const std::string& status, const std::string& message,
     write_ledger(*file_, ledger);
   };
   if (!broken()) {
-    guard(last_words);
+    guard(write_end);
     flush();
     close();
     return;
   }
-  // Back to the last flush, which fits on the disk; it only has to be told why it is the last. The
-  // caller knows already that the file could not be written: failing again is no news.
+  // The file goes back to the last flush, which fits on the disk, and gets the status and message.
   close();
   try {
     guard([&] {
       *file_ = {H5Fopen(path_.c_str(), H5F_ACC_RDWR, file_access()), H5Fclose};
     });
-    guard(last_words);
+    guard(write_end);
     flush();
-  } catch (const RunError&) {
+  } catch (const RunError&) { // the first failure has already been reported
   }
   close();
 }
@@ -272,19 +262,6 @@ void RunFile::close() {
 
 bool RunFile::broken() const {
   return *file_ >= 0 && hdf5::FileDriver::of(*file_).error() != 0;
-}
-
-void RunFile::abandon(const std::exception& failure) {
-  if (broken()) throw_error();
-  if (*file_ >= 0)
-    hdf5::FileDriver::of(*file_).abandon(EIO); // not the disk: say what HDF5 says
-  throw RunError(fmt::format("cannot write {}: {}", path_.string(), failure.what()));
-}
-
-void RunFile::throw_error() const {
-  throw RunError(fmt::format("cannot write {}: {}. It is readable up to the last flush",
-                             path_.string(),
-                             std::strerror(hdf5::FileDriver::of(*file_).error())));
 }
 
 } // namespace ehdjet

@@ -12,12 +12,11 @@
 #include "readable_file.hpp"
 
 namespace ehdjet {
-
 namespace {
 
 constexpr std::uint64_t newest_version = 1;
 
-// Names of the columns of a part, in the order that the file gives, or else alphabetically.
+// The names of the columns of a part, in the order of RunReader::table.
 std::vector<std::string> names_of(const ReadableFile& file, const std::string& part) {
   const hdf5::Handle group(H5Gopen2(file.file(), part.c_str(), H5P_DEFAULT), H5Gclose);
   if (!hdf5::has_attribute(group, "columns")) return file.names_in(part);
@@ -92,24 +91,14 @@ RunReader::RunReader(const std::filesystem::path& path)
   });
 }
 
-std::string RunReader::status() const {
-  return attribute("status");
-}
-std::string RunReader::message() const {
-  return attribute("message");
-}
-
 std::string RunReader::attribute(const std::string& name) const {
   return file_->guard(
       [&] { return hdf5::read_text_attribute(file_->file(), name.c_str()); });
 }
 
-std::string RunReader::scene_given() const {
-  return file_->guard([&] { return hdf5::read_text(file_->file(), "scene/given"); });
-}
-
-std::string RunReader::scene_resolved() const {
-  return file_->guard([&] { return hdf5::read_text(file_->file(), "scene/resolved"); });
+std::string RunReader::scene(const std::string& form) const {
+  return file_->guard(
+      [&] { return hdf5::read_text(file_->file(), ("scene/" + form).c_str()); });
 }
 
 bool RunReader::has(const std::string& part) const {

@@ -3,12 +3,11 @@
 #include "ehdjet/budget/budget.hpp"
 #include "ehdjet/budget/effective_tension.hpp"
 #include "ehdjet/core/error.hpp"
+#include "ehdjet/core/thread_count.hpp"
 #include "ehdjet/core/version.hpp"
-#include "ehdjet/coulomb/direct_sum.hpp"
+#include "ehdjet/coulomb/simd_level.hpp"
 #include "ehdjet/io/records.hpp"
 #include "ehdjet/run_files/run_reader.hpp"
-
-#include <omp.h>
 
 #include <exception>
 #include <fmt/format.h>
@@ -21,39 +20,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The run was stopped from outside.
+/// The caller has stopped the run.
 struct Interrupted : RunError {
   using RunError::RunError;
-};
-
-class InterruptCheck final : public Observer {
-public:
-  explicit InterruptCheck(std::function<const char*()> interrupted)
-      : interrupted_(std::move(interrupted)) {}
-  [[nodiscard]] Interest interest() const override { return {.ends_of_steps = true}; }
-  void after_step(const JetSnapshot& snapshot) override {
-    if (const char* reason = interrupted_())
-      throw Interrupted(
-          fmt::format("stopped by {} at t = {:.9g} s", reason, snapshot.time));
-  }
-
-private:
-  std::function<const char*()> interrupted_;
-};
-
-/// A number of threads for a while.
-class Threads {
-public:
-  explicit Threads(std::optional<std::size_t> threads)
-      : before_(omp_get_max_threads()) {
-    if (threads) omp_set_num_threads(static_cast<int>(*threads));
-  }
-  ~Threads() { omp_set_num_threads(before_); }
-  Threads(const Threads&) = delete;
-  Threads& operator=(const Threads&) = delete;
-
-private:
-  int before_;
 };
 
 void add_records(Simulation& simulation, const std::shared_ptr<RunFile>& file,
@@ -86,7 +55,7 @@ void add_records(Simulation& simulation, const std::shared_ptr<RunFile>& file,
   }
 }
 
-/// What the solver has done, unless it is the direct sum, of which there is nothing to tell.
+/// Description of the solver, or an empty text for the direct sum.
 std::string coulomb_method(const Simulation& s) {
   for (const auto& term : s.dynamics().terms())
     if (const auto report = term->report(); report && report->method != "direct")
@@ -94,17 +63,17 @@ std::string coulomb_method(const Simulation& s) {
   return {};
 }
 
-/// Takes over the jet of a run of the same scene that another file has a checkpoint of.
+/// Restores the last checkpoint of another run of the same scene.
 void go_on_from(const fs::path& file, const fs::path& output, Simulation& simulation,
                 const Scene& scene) {
   std::error_code ignored;
   if (fs::equivalent(file, output, ignored))
     throw InputError(
-        fmt::format("{} holds the run up to its checkpoint: choose another name "
+        fmt::format("{} contains the run up to its checkpoint: choose another name "
                     "for its continuation with -o",
                     file.string()));
   const RunReader before(file);
-  if (const auto d = difference_from(before.scene_resolved(), scene.config))
+  if (const auto d = difference_from(before.scene("resolved"), scene.config))
     throw InputError(fmt::format("{} cannot be continued with this scene: {}. Only "
                                  "run.end_time and [output] may differ",
                                  file.string(), *d));
@@ -128,7 +97,7 @@ std::map<std::string, std::string> build_environment() {
 }
 
 RunResult run_scene(const Scene& scene, const fs::path& path, RunOptions options) {
-  const Threads threads(options.threads ? options.threads : scene.config.run.threads);
+  const ThreadCount threads(options.threads ? options.threads : scene.config.run.threads);
   const auto simulation = build_simulation(scene, std::move(options.extras));
   Provenance provenance{.scene_file = options.scene_file,
                         .scene_given = scene.given,
@@ -144,8 +113,12 @@ RunResult run_scene(const Scene& scene, const fs::path& path, RunOptions options
                                               scene.config.output.flush);
   add_records(*simulation, file, scene);
   if (options.started) options.started(*simulation);
-  if (options.interrupted) // last: the others have seen the step that it ends
-    simulation->add(std::make_unique<InterruptCheck>(std::move(options.interrupted)));
+  if (options.interrupted) // added last, so that the other observers see the last step
+    simulation->after_each_step([&](const Simulation& s) {
+      if (const char* reason = options.interrupted())
+        throw Interrupted(
+            fmt::format("stopped by {} at t = {:.9g} s", reason, s.jet().time));
+    });
 
   const auto finish = [&](const char* status, const std::string& message) {
     RunResult result{.status = status,
@@ -174,7 +147,7 @@ RunResult run_scene(const Scene& scene, const fs::path& path, RunOptions options
       kept = also.what();
     }
     throw Error(fmt::format("{}; {}", e.what(), kept), e.exit_code());
-  } catch (const std::exception& e) { // of the caller's own force, event or observer
+  } catch (const std::exception& e) { // from the caller's force term, event or observer
     finish("failed", e.what());
     throw;
   }

@@ -1,6 +1,6 @@
 #include "ehdjet/core/csv_table.hpp"
 #include "ehdjet/core/error.hpp"
-#include "ehdjet/run_files/frame_reader.hpp"
+#include "ehdjet/run_files/run_reader.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>

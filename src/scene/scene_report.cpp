@@ -7,6 +7,8 @@
 #include <cmath>
 #include <fmt/format.h>
 
+#include "physics_report.hpp"
+
 namespace ehdjet {
 namespace {
 
@@ -200,7 +202,7 @@ std::string run_text(const Scene& scene) {
 
 std::string scene_report(const Scene& scene) {
   return resolved_toml(scene.config) + groups_text(scene.config) + stability_text(scene)
-         + run_text(scene);
+         + physics_text(scene) + run_text(scene) + cost_text(scene);
 }
 
 } // namespace ehdjet

@@ -1,8 +1,10 @@
 #include "suggestion.hpp"
 
 #include <algorithm>
+#include <array>
 #include <fmt/format.h>
 #include <numeric>
+#include <utility>
 
 namespace ehdjet {
 
@@ -21,7 +23,17 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return row.back();
 }
 
+namespace {
+
+/// Keys that have another name now.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 1> renamed{
+    {{"coulomb.tolerance_norm", "coulomb.norm"}}};
+
+} // namespace
+
 std::string suggestion(std::string_view wrong, const std::vector<std::string>& known) {
+  for (const auto& [before, now] : renamed)
+    if (wrong == before) return fmt::format(" (did you mean {}?)", now);
   const auto table = [](std::string_view path) {
     const auto dot = path.find('.');
     return dot == std::string_view::npos ? std::string_view{} : path.substr(0, dot);

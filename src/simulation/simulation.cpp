@@ -135,6 +135,39 @@ JetSnapshot Simulation::now() const {
   return {jet_.time, jet_.columns(), jet_, ledger_, statistics_};
 }
 
+// Goes to the end of the step that has just been attempted, or to the first event in it, which is
+// applied.
+void Simulation::advance(double h, double end_time) {
+  const DenseStep step(jet_.time, h, jet_, *integrator_, *dynamics_);
+  const auto found = events_located_ ? first_event(step) : std::nullopt;
+  const double theta = found ? found->theta : 1.0;
+  CompensatedSum next_time = time_;
+  next_time += theta * h;
+  if (!found && h == end_time - jet_.time)
+    next_time = CompensatedSum(end_time); // whatever the round-off
+  if (const auto t = found ? events_[found->index]->scheduled_time() : std::nullopt)
+    next_time = CompensatedSum(*t);
+  const double t1 = next_time;
+  for (Observer* o : step_observers_) o->begin_step(step, events_);
+  show_until(step, t1);
+  for (Observer* o : step_observers_) o->end_step(t1, theta);
+  expected_event_ = found || !events_located_ ? never : expected_time(step);
+
+  if (found) {
+    stop_at(step, theta);
+  } else {
+    integrator_->commit(jet_.y);
+  }
+  time_ = next_time;
+  jet_.time = t1;
+  dynamics_->prescribe(jet_.time, jet_.y);
+  if (dynamics_->feeds()) feed(jet_, ledger_);
+  if (found)
+    for (std::size_t i = 0; i < events_.size(); ++i)
+      if (i != found->index) events_[i]->overtaken(t1);
+  apply_events(found ? found->index : events_.size());
+}
+
 void Simulation::run_until(double end_time) {
   const WallClock clock;
   const double wall_before = statistics_.wall_time;
@@ -145,36 +178,7 @@ void Simulation::run_until(double end_time) {
     const bool last =
         wanted >= (1 - 1e-9) * to_end; // leaves no remainder of round-off size
     cut |= last;
-    const double h = attempt_step(last ? to_end : wanted);
-    const DenseStep step(jet_.time, h, jet_, *integrator_, *dynamics_);
-
-    const auto found = events_located_ ? first_event(step) : std::nullopt;
-    const double theta = found ? found->theta : 1.0;
-    CompensatedSum next_time = time_;
-    next_time += theta * h;
-    if (!found && h == to_end)
-      next_time = CompensatedSum(end_time); // whatever the round-off
-    if (const auto t = found ? events_[found->index]->scheduled_time() : std::nullopt)
-      next_time = CompensatedSum(*t);
-    const double t1 = next_time;
-    for (Observer* o : step_observers_) o->begin_step(step, events_);
-    show_until(step, t1);
-    for (Observer* o : step_observers_) o->end_step(t1, theta);
-    expected_event_ = found || !events_located_ ? never : expected_time(step);
-
-    if (found) {
-      stop_at(step, theta);
-    } else {
-      integrator_->commit(jet_.y);
-    }
-    time_ = next_time;
-    jet_.time = t1;
-    dynamics_->prescribe(jet_.time, jet_.y);
-    if (dynamics_->feeds()) feed(jet_, ledger_);
-    if (found)
-      for (std::size_t i = 0; i < events_.size(); ++i)
-        if (i != found->index) events_[i]->overtaken(t1);
-    apply_events(found ? found->index : events_.size());
+    advance(attempt_step(last ? to_end : wanted), end_time);
     statistics_.wall_time = wall_before + clock.seconds();
     if (jet_.time >= checkpoint_due_ && !cut) make_checkpoint();
     for (Observer* o : step_end_observers_) o->after_step(now());

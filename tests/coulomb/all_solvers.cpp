@@ -3,17 +3,14 @@
 
 #include "coulomb/all_solvers.hpp"
 
-#include "ehdjet/coulomb/direct_sum.hpp"
 #include "ehdjet/coulomb/make_solver.hpp"
 
 #include <cmath>
 #include <cstdint>
 #include <cstring>
 
-#include "coulomb/cluster_solver.hpp"
-#include "coulomb/direct_sum_with.hpp"
 #include "coulomb/expansions.hpp"
-#include "coulomb/pair_tiles.hpp"
+#include "coulomb/solvers.hpp"
 
 namespace ehdjet::detail {
 namespace {
@@ -56,11 +53,8 @@ std::unique_ptr<CoulombSolver> direct_sum_on() {
   return make_direct_sum_with(pair_kernel<Simd>());
 }
 
-PairKernel eight_lane_pairs() {
-  return pair_kernel<EightLanes>();
-}
-ExpansionKernel eight_lane_expansions() {
-  return expansion_kernel<EightLanes>();
+Kernels eight_lane_kernels() {
+  return {pair_kernel<EightLanes>(), expansion_kernel<EightLanes>()};
 }
 
 } // namespace
@@ -82,10 +76,10 @@ std::unique_ptr<CoulombSolver> per_bead() {
                               .tolerance = std::pow(10.0, -digits),
                               .norm = ToleranceNorm::per_bead});
 }
-template <auto make, auto pairs, auto expansions>
+template <auto make, auto kernels>
 std::unique_ptr<CoulombSolver> with_kernels() {
   return detail::make_cluster_solver(
-      {.pairs = pairs(), .expansions = expansions()},
+      kernels(),
       {.tolerance = 1e-8, .norm = ToleranceNorm::per_bead, .order = 11, .leaf = 16},
       make());
 }
@@ -94,7 +88,7 @@ std::unique_ptr<CoulombSolver> with_kernels() {
 
 const std::vector<SolverCase>& all_solvers() {
   static const std::vector<SolverCase> cases = {
-      {"direct", [] { return make_coulomb_solver("direct"); }},
+      {"direct", [] { return make_coulomb_solver({.solver = "direct"}); }},
       {"direct_portable", direct_sum<SimdLevel::portable>},
       {"direct_avx2", direct_sum<SimdLevel::avx2>},
       {"direct_avx512", direct_sum<SimdLevel::avx512>},
@@ -102,16 +96,13 @@ const std::vector<SolverCase>& all_solvers() {
       {"direct_four_targets", detail::direct_sum_on<detail::FourTargets>},
       {"fmm", per_bead<fmm, 6>},
       {"fmm_tight", per_bead<fmm, 11>},
-      {"fmm_portable",
-       with_kernels<detail::make_fast_multipole, detail::portable_pair_kernel,
-                    detail::portable_expansion_kernel>},
+      {"fmm_portable", with_kernels<detail::make_fast_multipole, detail::portable_kernels>},
       {"fmm_eight_lanes",
-       with_kernels<detail::make_fast_multipole, detail::eight_lane_pairs,
-                    detail::eight_lane_expansions>},
+       with_kernels<detail::make_fast_multipole, detail::eight_lane_kernels>},
       {"treecode", per_bead<treecode, 6>},
       {"treecode_tight", per_bead<treecode, 11>},
-      {"treecode_eight_lanes", with_kernels<detail::make_treecode, detail::eight_lane_pairs,
-                                            detail::eight_lane_expansions>},
+      {"treecode_eight_lanes",
+       with_kernels<detail::make_treecode, detail::eight_lane_kernels>},
       {"automatic", per_bead<automatic, 6>},
   };
   return cases;

@@ -1,5 +1,4 @@
 #include "ehdjet/core/error.hpp"
-#include "ehdjet/coulomb/direct_sum.hpp"
 #include "ehdjet/coulomb/make_solver.hpp"
 
 #include "coulomb/all_solvers.hpp"
@@ -42,14 +41,15 @@ TEST(DirectSum, promises_nothing_but_round_off) {
 TEST(MakeSolver, makes_every_solver_it_lists) {
   EXPECT_FALSE(coulomb_solvers().empty());
   for (const SolverDescription& listed : coulomb_solvers()) {
-    EXPECT_EQ(make_coulomb_solver(listed.name)->name(), listed.name);
+    EXPECT_EQ(make_coulomb_solver({.solver = std::string(listed.name)})->name(),
+              listed.name);
     EXPECT_FALSE(listed.description.empty());
   }
 }
 
 TEST(MakeSolver, an_unknown_name_is_answered_with_the_known_ones) {
   try {
-    make_coulomb_solver("dirct");
+    make_coulomb_solver({.solver = "dirct"});
     FAIL() << "no exception";
   } catch (const InputError& error) {
     const std::string message = error.what();

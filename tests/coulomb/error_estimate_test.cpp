@@ -1,6 +1,6 @@
 #include "ehdjet/core/error.hpp"
-#include "ehdjet/coulomb/direct_sum.hpp"
 #include "ehdjet/coulomb/error_estimate.hpp"
+#include "ehdjet/coulomb/make_solver.hpp"
 
 #include <gtest/gtest.h>
 

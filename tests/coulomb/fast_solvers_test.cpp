@@ -14,8 +14,8 @@
 #include <utility>
 
 #include "coulomb/chains.hpp"
-#include "coulomb/checked_solver.hpp"
-#include "coulomb/crowding.hpp"
+#include "coulomb/clusters.hpp"
+#include "coulomb/solvers.hpp"
 
 namespace ehdjet::test {
 namespace {
@@ -220,7 +220,7 @@ public:
 
 private:
   int& tightened_;
-  std::unique_ptr<CoulombSolver> exact_ = make_coulomb_solver("direct");
+  std::unique_ptr<CoulombSolver> exact_ = make_coulomb_solver({.solver = "direct"});
 };
 
 TEST(CheckedSolver, measures_one_of_so_many_calls_and_tightens_a_solver_that_fails) {

@@ -1,4 +1,3 @@
-#include "ehdjet/coulomb/direct_sum.hpp"
 #include "ehdjet/coulomb/make_solver.hpp"
 
 #include <gtest/gtest.h>
@@ -12,7 +11,7 @@
 #include <utility>
 
 #include "coulomb/chains.hpp"
-#include "coulomb/cluster_solver.hpp"
+#include "coulomb/solvers.hpp"
 
 namespace ehdjet::test {
 namespace {

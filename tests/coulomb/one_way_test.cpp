@@ -1,5 +1,4 @@
 #include "ehdjet/core/error.hpp"
-#include "ehdjet/coulomb/direct_sum.hpp"
 #include "ehdjet/coulomb/make_solver.hpp"
 
 #include "coulomb/all_solvers.hpp"

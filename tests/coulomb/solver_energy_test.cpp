@@ -1,5 +1,4 @@
 #include "ehdjet/core/constants.hpp"
-#include "ehdjet/coulomb/energy.hpp"
 #include "ehdjet/coulomb/make_solver.hpp"
 
 #include <gtest/gtest.h>

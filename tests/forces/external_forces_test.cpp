@@ -32,7 +32,7 @@ TEST(ExternalForces, the_field_acts_on_charges_and_gravity_on_masses_both_along_
 TEST(CoulombForce, pushes_the_crest_of_a_sinusoidal_chain_outwards_by_a_lattice_sum) {
   constexpr int half = 200;
   constexpr double l = 0.02 * cm, q = 6.9e-2 * statC, amplitude = 1e-6 * l;
-  CoulombForce coulomb(make_coulomb_solver("direct"));
+  CoulombForce coulomb(make_coulomb_solver({.solver = "direct"}));
   for (const double beads_per_wave : {2.0, 4.0, 10.0, 50.0}) {
     const double kappa = 2 * std::numbers::pi / beads_per_wave;
     Chain chain(2 * half + 1);
@@ -56,7 +56,7 @@ TEST(CoulombForce, counts_beads_in_the_same_place_over_all_evaluations) {
   Chain chain(4);
   chain.place(0, {0, 0, 0}), chain.place(1, {1, 2, 3});
   chain.place(2, {1, 2, 3}), chain.place(3, {2, 1, 0});
-  CoulombForce coulomb(make_coulomb_solver("direct"));
+  CoulombForce coulomb(make_coulomb_solver({.solver = "direct"}));
   for (int call = 1; call <= 3; ++call) {
     for (const Vec3& f : chain.force(coulomb)) EXPECT_TRUE(f.allFinite());
     EXPECT_EQ(coulomb.report()->coincident_pairs, static_cast<std::uint64_t>(call));

@@ -75,7 +75,7 @@ void write_run(const std::filesystem::path& path, std::size_t frames, bool with_
 }
 
 void expect_intact(const RunReader& run, std::uint64_t flushed) {
-  EXPECT_EQ(run.scene_resolved(), "resolved = 1\n");
+  EXPECT_EQ(run.scene("resolved"), "resolved = 1\n");
   const std::size_t frames = run.has("frames") ? run.frame_times().size() : 0;
   ASSERT_GE(frames, flushed);
   for (std::size_t k = 0; k < frames; ++k) {

@@ -1,5 +1,5 @@
 #include "ehdjet/core/error.hpp"
-#include "ehdjet/io/plot_page.hpp"
+#include "ehdjet/io/export.hpp"
 #include "ehdjet/io/records.hpp"
 #include "ehdjet/run_files/run_file.hpp"
 

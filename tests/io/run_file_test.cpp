@@ -91,10 +91,10 @@ TEST(RunFile, says_where_it_came_from_and_how_it_ended) {
   const ScratchFolder folder;
   write_run(folder / "run.h5", 3);
   const RunReader run(folder / "run.h5");
-  EXPECT_EQ(run.status(), "complete");
-  EXPECT_EQ(run.message(), "all is well");
-  EXPECT_EQ(run.scene_given(), "given = \"ä\"\n");
-  EXPECT_EQ(run.scene_resolved(), "resolved = 1\n");
+  EXPECT_EQ(run.attribute("status"), "complete");
+  EXPECT_EQ(run.attribute("message"), "all is well");
+  EXPECT_EQ(run.scene("given"), "given = \"ä\"\n");
+  EXPECT_EQ(run.scene("resolved"), "resolved = 1\n");
   EXPECT_EQ(run.attribute("scene_file"), "scenes/made up.toml");
   EXPECT_EQ(run.attribute("threads"), "2");
 }
@@ -294,7 +294,7 @@ TEST(RunFile, is_readable_at_every_flush_while_it_grows) {
     file->flush();
     const RunReader run(folder / "run.h5");
     ASSERT_EQ(run.frame_times().size(), k + 1);
-    EXPECT_EQ(run.status(), "running");
+    EXPECT_EQ(run.attribute("status"), "running");
     expect_same(run.frame(k), fabricated_jet(k));
   }
 }

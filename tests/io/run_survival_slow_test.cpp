@@ -76,8 +76,10 @@ TEST(RunSurvival, dying_within_any_write_of_a_small_run_keeps_the_last_flush) {
   std::uint64_t written = 0, flushed = 0;
   const auto check = [&] {
     const RunReader run(path);
-    EXPECT_TRUE(run.status() == "running" || run.status() == "complete") << run.status();
-    EXPECT_EQ(run.message(), "");
+    EXPECT_TRUE(run.attribute("status") == "running"
+                || run.attribute("status") == "complete")
+        << run.attribute("status");
+    EXPECT_EQ(run.attribute("message"), "");
     expect_intact(run, flushed);
   };
   die_within_every_write(

@@ -73,7 +73,7 @@ TEST(RunSurvival, a_killed_run_keeps_every_frame_up_to_its_last_flush) {
     ASSERT_EQ(::waitpid(child, &status, 0), child);
     ASSERT_TRUE(WIFSIGNALED(status));
     const RunReader run(folder / "run.h5");
-    EXPECT_EQ(run.status(), "running");
+    EXPECT_EQ(run.attribute("status"), "running");
     expect_intact(run, *flushed);
     if (HasFatalFailure()) return;
   }
@@ -132,8 +132,8 @@ TEST(RunSurvival, a_full_disk_ends_the_run_and_leaves_the_last_flush) {
     file->finish("failed", message, jet.statistics, jet.ledger);
   }
   const RunReader run(folder / "run.h5");
-  EXPECT_EQ(run.status(), "failed");
-  EXPECT_NE(run.message().find("File too large"), std::string::npos);
+  EXPECT_EQ(run.attribute("status"), "failed");
+  EXPECT_NE(run.attribute("message").find("File too large"), std::string::npos);
   ASSERT_EQ(run.frame_times().size(), flushed);
   EXPECT_GT(flushed, 0U);
   for (std::size_t k = 0; k < flushed; ++k)

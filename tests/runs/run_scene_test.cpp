@@ -62,7 +62,7 @@ TEST(RunScene, runs_a_scene_with_a_force_an_event_and_an_observer_of_ones_own) {
   EXPECT_EQ(with.jet.charge.back(), without.jet.charge.back() / 2);
 
   const RunReader run(folder / "with.h5");
-  EXPECT_EQ(run.status(), "complete");
+  EXPECT_EQ(run.attribute("status"), "complete");
   ASSERT_EQ(run.frame_times().size(), 11U);
   // A frame at the time of an event shows the jet after it.
   EXPECT_EQ(run.frame(4)["charge"].back(), 2 * run.frame(5)["charge"].back());
@@ -86,7 +86,7 @@ TEST(RunScene, stops_when_it_is_told_to_and_goes_on_to_the_same_bits) {
   const RunResult part = run_scene(scene, folder / "part.h5", std::move(stopped));
   EXPECT_EQ(part.status, "interrupted");
   EXPECT_EQ(part.message.rfind("stopped by the test at t = ", 0), 0U) << part.message;
-  EXPECT_EQ(RunReader(folder / "part.h5").status(), "interrupted");
+  EXPECT_EQ(RunReader(folder / "part.h5").attribute("status"), "interrupted");
 
   RunOptions rest;
   rest.continue_from = folder / "part.h5";
@@ -173,8 +173,8 @@ TEST(RunScene, a_failure_of_any_kind_is_in_the_file) {
                std::logic_error);
   for (const char* name : {"ours.h5", "theirs.h5"}) {
     const RunReader run(folder / name);
-    EXPECT_EQ(run.status(), "failed");
-    EXPECT_EQ(run.message(), "enough");
+    EXPECT_EQ(run.attribute("status"), "failed");
+    EXPECT_EQ(run.attribute("message"), "enough");
     EXPECT_EQ(run.column("observables", "time").size(), 1U);
   }
 }
@@ -213,7 +213,7 @@ TEST(RunScene, simulation_file_and_observers_may_go_in_any_order) {
     simulation.reset();
     frames.reset(), book.reset(), budget.reset(), file.reset();
     const RunReader run(path);
-    EXPECT_EQ(run.status(), "running"); // nobody finished it
+    EXPECT_EQ(run.attribute("status"), "running"); // nobody finished it
     EXPECT_EQ(run.frame_times().size(), 6U);
     EXPECT_EQ(run.column("budget", "time").size(), 6U);
   }

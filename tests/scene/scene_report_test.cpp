@@ -31,7 +31,28 @@ TEST(SceneReport, warns_of_a_fixed_step_beyond_the_stability_limit) {
     return scene_report(read(good_scene, all));
   };
   expect_all(with_step("1e-4"), {"WARNING", "integrator.step = 0.0001 s"});
-  EXPECT_EQ(with_step("1e-6").find("WARNING"), std::string::npos);
+  EXPECT_EQ(with_step("1e-6").find("WARNING: integrator"), std::string::npos);
+}
+
+TEST(SceneReport, warns_of_what_a_thread_cannot_be) {
+  expect_all(scene_report(read_scene(EHDJET_SCENES "/pvp.toml")),
+             {"WARNING: field at the surface of the jet at the nozzle 4.14e+07 V/m",
+              "WARNING: electrostatic over capillary pressure at the nozzle 18"});
+  expect_all(scene_report(read(good_scene, {"coulomb.near_field=free-surface",
+                                            "nozzle.link_length=1.9e-4",
+                                            "coulomb.softened_pairs=false"})),
+             {"near field (free-surface)",
+              "WARNING: coulomb.near_field with surface_tension.form",
+              "WARNING: nozzle.link_length = 0.00019 m is less than 4 radii"});
+  EXPECT_EQ(scene_report(read(good_scene, {"nozzle.charge_density=0.01"})).find("WARNING"),
+            std::string::npos);
+}
+
+TEST(SceneReport, of_a_pumped_jet_estimates_what_it_costs) {
+  expect_all(scene_report(read_scene(EHDJET_SCENES "/converged.toml")),
+             {"fed by a pump at 1.80556e-08 m^3/s and 1.86703e-07 A", "v_s = 2.2989 m/s",
+              "softened pairs", "links longer than 0.004 m are cut",
+              "beads         at least", "evaluations   about"});
 }
 
 TEST(SceneReport, of_a_chain_names_its_beads_and_stiffest_link) {

@@ -187,7 +187,8 @@ TEST(Budget, does_not_close_if_a_force_is_not_what_its_energy_says) {
       };
       add("field", std::make_unique<ExternalField>(*golden.scene.config.field->strength));
       add("gravity", std::make_unique<Gravity>(pvp::gravity));
-      add("Coulomb", std::make_unique<CoulombForce>(make_coulomb_solver("direct")));
+      add("Coulomb",
+          std::make_unique<CoulombForce>(make_coulomb_solver({.solver = "direct"})));
       add("line", std::make_unique<LineSurfaceTension>(pvp::surface_tension));
       add("fluid", std::make_unique<Maxwell>(pvp::modulus, pvp::viscosity));
       BudgetedRun run(simulation_of(golden.scene, std::move(dynamics)), 2e-4);
@@ -500,7 +501,7 @@ TEST(Budget, with_a_fast_solver_is_off_by_no_more_than_its_forces) {
           CoulombConfig{.solver = solver, .tolerance = tolerance, .leaf = 8};
       integrate(scene, "dormand-prince", 1e-7);
       BudgetedRun run(scene, end);
-      const auto direct = make_coulomb_solver("direct");
+      const auto direct = make_coulomb_solver({.solver = "direct"});
       std::vector<double> f(3 * n);
       double action = 0, steps = 100; // integral of |F| |v|
       run.simulation->add(std::make_unique<Watch>(end / steps, [&](const JetSnapshot& s) {

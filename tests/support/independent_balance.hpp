@@ -1,7 +1,7 @@
 #pragma once
 
 #include "ehdjet/core/constants.hpp"
-#include "ehdjet/coulomb/energy.hpp"
+#include "ehdjet/coulomb/solver.hpp"
 #include "ehdjet/forces/surface_tension.hpp"
 #include "ehdjet/jet/exchange.hpp"
 #include "ehdjet/jet/jet_state.hpp"

@@ -6,14 +6,13 @@
 
 namespace ehdjet {
 
-/// How far a computed Coulomb force is from the exact one, in each norm. On a smooth chain
-/// the net force is a small residue of large terms: the first two show that, the third not.
+/// The error of a Coulomb force in each norm [-]. On a smooth chain the pair forces nearly cancel.
+/// The first two norms are relative to the net force and show this; the third is not.
 struct CoulombErrorSample {
-  double relative_moving =
-      0; ///< [-] rms error over the rms net force, strongest tenth left out
-  double relative_l2 = 0;      ///< [-] over all sampled targets
-  double worst_per_target = 0; ///< [-] relative to what acts on it, before cancelling
-  std::size_t targets = 0;     ///< how many were sampled
+  double relative_moving = 0;
+  double relative_l2 = 0;
+  double worst_per_target = 0;
+  std::size_t targets = 0; ///< number of sampled targets
 
   [[nodiscard]] double in(ToleranceNorm norm) const {
     return norm == ToleranceNorm::moving   ? relative_moving
@@ -22,19 +21,20 @@ struct CoulombErrorSample {
   }
 };
 
-/// Compares `force` (from nothing but these charges) with a plain direct sum in long double,
-/// on up to `max_targets` evenly spaced targets i, for the norm `moving` among those that move:
+/// Compares `force`, which must come from these charges only, with a plain direct sum in long
+/// double. The targets i are up to `max_targets` evenly spaced charges, which all move for the norm
+/// `moving`:
 ///
 ///     relative_moving  = sqrt( <|dF_i|^2> / <|F_i|^2 of all but the strongest tenth> )
 ///     relative_l2      = sqrt( sum_i |dF_i|^2 / sum_i |F_i|^2 )
 ///     worst_per_target = max_i |dF_i| / sum_j |f_ij|,   |f_ij| = k_C |q_i q_j| / r_ij^2
 ///
-/// A ratio 0/0 is 0. Where long double is 80 bits wide the reference is good to 1e-19 sqrt(n)
-/// of sum_j |f_ij|.
+/// A ratio 0/0 counts as 0. With a long double of 80 bits the error of the reference is about
+/// 1e-19 sqrt(n) sum_j |f_ij|.
 ///
 /// shapes : force (n)                 units : [N]
 /// cost   : max_targets * n pairs of about 15 ns, shared by all threads
-/// errors : sizes that differ, or no target allowed, are a ContractViolation
+/// errors : ContractViolation if sizes differ or `max_targets` is 0
 CoulombErrorSample sampled_error(const PointCharges& charges, ConstVec3View force,
                                  ToleranceNorm norm = ToleranceNorm::global,
                                  std::size_t max_targets = 2000);

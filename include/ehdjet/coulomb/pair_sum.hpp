@@ -8,11 +8,11 @@
 
 namespace ehdjet {
 
-/// What point charges do at one place, charge by charge and without the factor k_C:
+/// Potential and field of point charges at one place, without the factor k_C:
 ///
-///     potential = sum_j q_j/d_j,  field = sum_j q_j d_j/d_j^3,  magnitude = sum_j |q_j|/d_j^2,
+///     potential = sum_j q_j/d_j,  field = sum_j q_j d_j/d_j^3,  magnitude = sum_j |q_j|/d_j^2
 ///
-/// d_j the vector from charge j to the place. Charges at the place itself are skipped.
+/// Here d_j is the vector from charge j to the place. Charges at the place itself are skipped.
 template <class Real>
 struct PairSum {
   Real potential = 0, x = 0, y = 0, z = 0, magnitude = 0;
@@ -27,7 +27,7 @@ struct PairSum {
   }
 };
 
-/// Over the charges [begin, end), one after the other in the arithmetic of `Real`.
+/// The sum over the charges [begin, end) in the arithmetic of `Real`.
 ///
 /// shapes : r, q (n)                  units : [m], [C] -> [C/m], [C/m^2]
 template <class Real = double>
@@ -48,7 +48,7 @@ PairSum<Real> pair_sum(const Vec3& at, ConstVec3View r, std::span<const double> 
   return {potential, ex, ey, ez, magnitude};
 }
 
-/// Over all charges but number `skipped`, wherever it is.
+/// The sum over all charges except the charge `skipped`.
 template <class Real = double>
 PairSum<Real> pair_sum(const Vec3& at, ConstVec3View r, std::span<const double> q,
                        std::size_t skipped) {
@@ -56,7 +56,7 @@ PairSum<Real> pair_sum(const Vec3& at, ConstVec3View r, std::span<const double> 
   return sum += pair_sum<Real>(at, r, q, skipped + 1, q.size());
 }
 
-/// The potential alone, of the charges [begin, end).
+/// Only the potential of the charges [begin, end).
 inline double potential_sum(const Vec3& at, ConstVec3View r, std::span<const double> q,
                             std::size_t begin, std::size_t end) {
   const double *x = r.x.data(), *y = r.y.data(), *z = r.z.data(), *charge = q.data();

@@ -5,12 +5,12 @@
 
 namespace ehdjet {
 
-/// Instruction sets that kernels are compiled for; `best_simd_level()` picks one at run time.
+/// The instruction sets for which kernels are compiled.
 enum class SimdLevel { portable, avx2, avx512 };
 inline constexpr std::array simd_levels{SimdLevel::portable, SimdLevel::avx2,
                                         SimdLevel::avx512};
 
-[[nodiscard]] SimdLevel best_simd_level(); ///< widest level this processor has
+[[nodiscard]] SimdLevel best_simd_level(); ///< the widest level that this processor has
 [[nodiscard]] std::string_view name_of(SimdLevel level); ///< "portable", "avx2", "avx512"
 
 } // namespace ehdjet

@@ -7,34 +7,40 @@
 #include <optional>
 #include <string>
 
+/// Exports of a run. Numbers are in SI units; in text they have 17 digits, which give back the
+/// same double. All functions throw an InputError if the run does not have the part.
 namespace ehdjet {
 
-// Every number is written with the 17 digits that bring back the same double, in SI units that
-// the header of its column names. InputError if the run has no such part.
-
-/// One row per output time, deposited bead, refinement or time of the budget (CSV): the part
-/// "observables", "deposit", "refinements" or "budget". A deposited bead has the arc length of the
-/// fibre up to the end of its link, from the first bead that left the chain; links are as long as
-/// when they left.
+/// Writes "observables", "deposit", "refinements" or "budget" as CSV: one row per output time,
+/// deposited bead or refinement. The deposit also gets the arc length of the fibre, from the first
+/// bead that left the chain to the end of the bead's link, with link lengths at removal.
 void export_table(const RunReader& run, const std::string& part, TextOutput& output);
 
-/// One row per bead of the frame nearest to `time`, the last one by default (CSV).
+/// Writes one row per bead of the frame nearest to `time`, by default the last one (CSV).
 void export_beads(const RunReader& run, std::optional<double> time, TextOutput& output);
 
-/// Time mean and minimum of the resolving power at each lambda (CSV), over the samples from time
-/// `from` on [s]; by default the later half of the run.
-/// errors : InputError if there is no sample that late
+/// Writes the time mean and minimum of the resolving power at each lambda (CSV), over the samples
+/// with time >= `from` [s]; by default over the second half of the run.
+/// errors : InputError if there is no such sample
 void export_resolving_power(const RunReader& run, std::optional<double> from,
                             TextOutput& output);
 
-/// All frames, or the one nearest to `time`, as extended XYZ: OVITO reads all of it; VMD wants
-/// the same number of beads in every frame, so give it one frame.
+/// Writes all frames, or the one nearest to `time`, as extended XYZ. OVITO reads all frames; VMD
+/// requires the same number of beads in every frame and can therefore read a single frame.
 /// Species: N nozzle, E embryo, L landed, B any other bead.
 void export_xyz(const RunReader& run, std::optional<double> time, TextOutput& output);
 
-/// All frames, or the one nearest to `time`, for ParaView: the collection `pvd` and, in the
-/// folder <name of pvd>_vtk beside it, one poly-line per frame (VTK XML PolyData).
+/// Writes all frames, or the one nearest to `time`, for ParaView: the collection `pvd` and one
+/// poly-line per frame (VTK XML PolyData) in the folder <name of pvd>_vtk beside it.
 void export_vtk(const RunReader& run, std::optional<double> time,
                 const std::filesystem::path& pvd, bool overwrite);
+
+/// Returns a gnuplot script that draws a run on one page: the frame nearest to `time` (by default
+/// the last one) from the side and along the axis, and observables over time.
+///
+/// errors : InputError if `output` does not end in .png, .svg or .pdf, or if the run has neither
+///          frames nor observables
+std::string plot_page(const RunReader& run, std::optional<double> time,
+                      const std::filesystem::path& output);
 
 } // namespace ehdjet

@@ -6,14 +6,16 @@
 #include <fmt/format.h>
 #include <iterator>
 #include <memory>
-#include <string>
 #include <utility>
 
 namespace ehdjet {
 
-/// Text for the user: a file that is never overwritten unawares, or standard output.
+/// errors : InputError if the file or folder exists and `overwrite` is false
+void refuse_existing(const std::filesystem::path& path, bool overwrite);
+
+/// Text for the user, written to a file or to standard output.
 ///
-/// The file appears with the first text, so that a failed export leaves nothing behind.
+/// The file is created with the first text, so that an export that fails before leaves no file.
 /// errors : InputError if the file exists and `overwrite` is false, or cannot be created;
 ///          RunError if it cannot be written (disk full)
 class TextOutput {
@@ -27,7 +29,7 @@ public:
                    std::forward<Arguments>(arguments)...);
     if (text_.size() > buffer_size) drain();
   }
-  /// Writes what is left; without it the end of the text is lost.
+  /// Writes the rest of the text, which would be lost otherwise, and closes the file.
   void close();
 
 private:

@@ -10,68 +10,66 @@
 #include <memory>
 #include <span>
 #include <string>
-#include <vector>
 
 namespace ehdjet {
 
 class DenseStep;
 class Event;
 
-/// The jet at one instant, prescribed beads (nozzle, embryo) in their places.
+/// The jet at one instant. The nozzle bead and an embryo are at their prescribed places.
 struct JetSnapshot {
   double time = 0;                  ///< [s]
   JetColumns<const double> columns; ///< at `time`
-  const JetState& jet;              ///< the chain the columns belong to; not its y
+  const JetState& jet;              ///< the chain; its own columns may be at another time
   const Ledger& ledger;
   const RunStatistics& statistics;
 };
 
-/// Which calls beside those at times of its own an observer wants. A simulation in which nobody
-/// wants them does not make them.
+/// The calls that an observer needs besides those at its own times. A simulation makes only the
+/// calls that some observer needs.
 struct Interest {
   bool ends_of_steps = false;    ///< after_step
   bool steps_and_events = false; ///< begin_step, end_step, before_event, after_event
 };
 
-/// Looks at the jet and never changes it: a run gives the same jet, bit for bit, with or without
-/// observers. Every function does nothing unless it is overridden. Any of them may throw to end
-/// the run.
+/// Observes the jet without changing it: a run gives the same bits with and without observers. A
+/// function that is not overridden does nothing. Each function may throw to end the run.
 class Observer {
 public:
   virtual ~Observer();
 
-  /// Next time at which this observer wants to see the jet; infinity for never [s].
+  /// The next time at which `observe` is called, or infinity [s].
   [[nodiscard]] virtual double next_time() const {
     return std::numeric_limits<double>::infinity();
   }
-  /// The jet at `next_time()`, after any event at that same time. A state between two steps is
-  /// read off the dense output.
+  /// Called with the jet at `next_time()`, after the events at that time. Between the ends of steps
+  /// the state comes from the dense output.
   virtual void observe(const JetSnapshot& /*snapshot*/) {}
-  /// The run goes on from a checkpoint: times before it have been seen to.
+  /// Called when the run continues from a checkpoint: `next_time` must not be before `time` [s].
   virtual void skip_to(double /*time*/) {}
-  /// A bead has left the chain.
+  /// Called when a bead has left the chain.
   virtual void deposit(const DepositedBead& /*bead*/) {}
-  /// The chain has been cut anew; only if the run records refinements.
+  /// Called after a refinement, if the run records refinements.
   virtual void refined(const RefinementRecord& /*record*/) {}
-  /// All that the run needs to go on from here later; only if the run makes checkpoints.
+  /// Called with everything that is needed to continue the run, if the run makes checkpoints.
   virtual void checkpoint(const Checkpoint& /*checkpoint*/) {}
 
-  /// Asked once, when the observer is added.
+  /// Called once, when the observer is added.
   [[nodiscard]] virtual Interest interest() const { return {}; }
-  /// A step has been accepted; observers have not been shown any of it, events not been applied.
-  /// `step` and `events` may be looked at until `end_step`.
+  /// Called when a step has been accepted, before observers see it and before its events. `step` and
+  /// `events` are valid until `end_step`.
   virtual void begin_step(const DenseStep& /*step*/,
                           std::span<const std::unique_ptr<Event>> /*events*/) {}
-  /// The step up to `theta` has become the past, the time is t [s].
+  /// Called when the part of the step up to `theta` is complete. The time is t [s].
   virtual void end_step(double /*t*/, double /*theta*/) {}
-  /// The jet before and after an event, both at its time.
+  /// Called before and after an event, with the jet at the time of the event.
   virtual void before_event(const Event& /*event*/, const JetState& /*jet*/) {}
   virtual void after_event(const Event& /*event*/, const JetState& /*jet*/) {}
-  /// The jet at the end of a step, after its events and its checkpoint.
+  /// Called at the end of a step, after its events and its checkpoint.
   virtual void after_step(const JetSnapshot& /*snapshot*/) {}
 };
 
-/// Numbers about a jet under given names, for those who write tables and need not know more.
+/// Named quantities of a jet, for observers that write tables of them.
 class Accounts {
 public:
   struct Column {
@@ -79,7 +77,8 @@ public:
   };
   virtual ~Accounts() = default;
   [[nodiscard]] virtual std::span<const Column> columns() const = 0;
-  /// row (columns): at the time of the snapshot, which must not lie before the last one.
+  /// Sets row (columns) to the values at the time of the snapshot. Successive times must not
+  /// decrease.
   virtual void measure(const JetSnapshot& snapshot, std::span<double> row) = 0;
 };
 

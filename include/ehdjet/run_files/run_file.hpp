@@ -2,35 +2,74 @@
 
 #include "ehdjet/core/checkpoint.hpp"
 #include "ehdjet/jet/ledger.hpp"
-#include "ehdjet/run_files/column.hpp"
 
 #include <chrono>
 #include <cstddef>
 #include <deque>
-#include <exception>
 #include <filesystem>
 #include <functional>
 #include <map>
 #include <memory>
+#include <span>
 #include <string>
+#include <vector>
 
 namespace ehdjet {
 namespace hdf5 {
-class Handle;
+class Handle; // HDF5 is used only inside src/run_files
 }
 
-/// What a run file says about where it came from. Written as root attributes.
-struct Provenance {
-  std::string scene_file, scene_given, scene_resolved;
-  std::map<std::string, std::string>
-      environment; ///< version, commit, compiler, simd, threads, ...
+/// How the values of a column are stored: as doubles, 64-bit counts or flags of one byte.
+enum class ColumnType { real, count, flag };
+
+/// Name and attributes of a data set.
+struct ColumnInfo {
+  std::string name, unit, description;
+  ColumnType type = ColumnType::real;
 };
 
-/// One run, one HDF5 file, written as the run goes. Layout: src/run_files/README.md.
+/// A one-dimensional data set of a run file, to which rows are appended.
 ///
-/// Readable without this project (h5py, h5dump) and, up to the last flush, after the process
-/// was killed. Only the parts that are asked for exist in the file. Who writes to it shares its
-/// ownership: the file stays open until the last of them is gone, or until `finish`.
+/// Rows are collected in memory and written one chunk at a time. `flush` also writes the incomplete
+/// chunk, which is written again when it has grown. Memory is allocated only by the constructor.
+/// Rows may be appended only within `RunFile::write`, which handles failures.
+class Column {
+public:
+  /// Creates the data set in a group.
+  Column(const hdf5::Handle& group, const ColumnInfo& info, std::size_t chunk_rows);
+  ~Column();
+
+  /// Counts are exact up to 2^53.
+  void append(double value);
+  void append(std::span<const double> values);
+  void flush();
+
+private:
+  void append_bytes(const void* values, std::size_t rows);
+  void write_chunk();
+
+  std::unique_ptr<hdf5::Handle> dataset_;
+  ColumnType type_;
+  std::size_t row_size_, chunk_rows_;
+  std::size_t first_ = 0;   ///< row of the data set where the chunk in memory begins
+  std::size_t rows_ = 0;    ///< rows in that chunk
+  std::size_t written_ = 0; ///< of these rows, how many have been written
+  std::vector<unsigned char> chunk_;
+};
+
+/// The origin of a run file.
+struct Provenance {
+  std::string scene_file, scene_given, scene_resolved;
+  /// Root attributes by name: version, commit, compiler, simd, threads, ...
+  std::map<std::string, std::string> environment;
+};
+
+/// The HDF5 file of one run, which is written during the run. Layout: src/run_files/README.md.
+///
+/// Other programs (h5py, h5dump) can read the file. If the process is killed, the file is readable
+/// up to the last flush. It contains only the parts that the scene asks for. The observers that
+/// write to it share its ownership: the file stays open until the last of them is destroyed, or
+/// until `finish`.
 /// errors : InputError if the file exists and `overwrite` is false, or cannot be created;
 ///          RunError if writing fails (disk full)
 class RunFile {
@@ -38,43 +77,40 @@ public:
   /// `flush_interval` in [s].
   RunFile(const std::filesystem::path& path, bool overwrite, const Provenance& provenance,
           double flush_interval);
-  ~RunFile(); ///< closes; a file without `finish` keeps the status "running"
+  ~RunFile(); ///< closes the file; without `finish` its status remains "running"
   RunFile(const RunFile&) = delete;
   RunFile& operator=(const RunFile&) = delete;
 
-  /// A new data set, empty, in a group at the root that is made if need be. It lives until the
-  /// file is closed, and is in the file after the next flush.
+  /// Adds an empty data set to a group below the root, which is created if necessary. The reference
+  /// is valid until the file is closed. The data set is in the file after the next flush.
   Column& add_column(const std::string& group, const ColumnInfo& info,
                      std::size_t chunk_rows);
-  /// An attribute of such a group.
+  /// Writes an attribute of such a group.
   void describe(const std::string& group, const char* attribute, const std::string& text);
-  /// Runs `append`, which appends one whole row, frame or part, and flushes if it is time.
+  /// Calls `append`, which appends one whole row, frame or part. Flushes if `flush_interval` has
+  /// passed since the last flush.
   void write(const std::function<void()>& append);
-  /// Keeps a checkpoint instead of the last one, which stays until the new one is complete, and
-  /// flushes. All of a run have the same names.
+  /// Replaces the last checkpoint, which is kept until the new one is complete, and flushes. All
+  /// checkpoints of a run must have the same names.
   void keep(const Checkpoint& checkpoint);
-  /// Makes everything written so far readable by others.
+  /// Makes everything that has been written readable by other programs.
   void flush();
-  /// Last words: status "complete", "interrupted" or "failed", a message, the run's cost, what
-  /// entered and left the jet, and further root attributes. Closes the file.
+  /// Writes the status ("complete", "interrupted" or "failed"), a message, the statistics, the
+  /// ledger and further root attributes. Closes the file.
   void finish(const std::string& status, const std::string& message,
               const RunStatistics& statistics, const Ledger& ledger,
               const std::map<std::string, std::string>& notes = {});
 
 private:
-  template <class Action>
-  void guard(const Action& action);
+  void guard(const std::function<void()>& action);
   [[nodiscard]] bool broken() const;
-  [[noreturn]] void abandon(const std::exception& failure);
-  [[noreturn]] void throw_error() const;
-  void create(const Provenance& provenance);
   void close();
 
   std::filesystem::path path_;
   std::chrono::duration<double> flush_interval_;
   std::chrono::steady_clock::time_point flushed_ = std::chrono::steady_clock::now();
-  std::unique_ptr<hdf5::Handle> file_; // HDF5 stays inside src/run_files
-  std::deque<Column> columns_;         // observers refer to them
+  std::unique_ptr<hdf5::Handle> file_;
+  std::deque<Column> columns_; // a deque, because observers refer to the columns
 };
 
 } // namespace ehdjet

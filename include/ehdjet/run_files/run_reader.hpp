@@ -1,47 +1,99 @@
 #pragma once
 
 #include "ehdjet/core/checkpoint.hpp"
-#include "ehdjet/run_files/frame_reader.hpp"
 
+#include <cstddef>
 #include <filesystem>
+#include <memory>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace ehdjet {
 
+/// Named columns of equal length from a run file, in SI units. Counts and flags are also stored as
+/// doubles, which are exact up to 2^53.
+struct RunTable {
+  struct Column {
+    std::string name, unit;
+    std::vector<double> values;
+  };
+  std::vector<Column> columns;
+
+  [[nodiscard]] std::size_t rows() const {
+    return columns.empty() ? 0 : columns.front().values.size();
+  }
+  /// Null if there is no column of that name.
+  [[nodiscard]] const Column* find(std::string_view name) const;
+  /// errors : InputError if there is no column of that name
+  [[nodiscard]] const std::vector<double>& operator[](std::string_view name) const;
+};
+
+/// The chain at one instant, bead 0 (the nozzle) first: the columns of /beads.
+struct Frame : RunTable {
+  double time = 0; ///< [s]
+};
+
+class ReadableFile; // HDF5 is used only inside src/run_files
+
+/// Reads the frames of a run file, or of another HDF5 file with /frames/time, /frames/offset and
+/// /beads like those of a run file. The run may have been killed or may still be running.
+///
+/// Only whole frames are read. A frame is whole if the file has its time and both its offsets, if
+/// every column of /beads reaches to its end, and if all frames before it are whole.
+/// errors : InputError with the path if the file does not exist, is not an HDF5 file, is damaged or
+///          has no frames
+class FrameReader {
+public:
+  explicit FrameReader(const std::filesystem::path& path);
+  ~FrameReader();
+  FrameReader(const FrameReader&) = delete;
+  FrameReader& operator=(const FrameReader&) = delete;
+
+  [[nodiscard]] const std::filesystem::path& path() const;
+  [[nodiscard]] std::vector<double> frame_times() const; ///< [s]
+  [[nodiscard]] Frame frame(std::size_t index) const;
+  /// Index of the frame nearest to `time` (of two equally near frames, the earlier), or of the last
+  /// frame without a time. errors : InputError if there is no frame yet
+  [[nodiscard]] std::size_t nearest_frame(std::optional<double> time) const;
+
+protected:
+  std::unique_ptr<ReadableFile> file_;
+};
+
 /// Samples of R = l_step/l along the jet.
 struct ResolvingPowerTable {
-  std::vector<double> lambda; ///< places along the jet, 0 ... 1
+  std::vector<double> lambda; ///< positions along the jet, 0 ... 1
   std::vector<double> time;   ///< of each sample [s]
   std::vector<double> r;      ///< (time * lambda), sample after sample
 };
 
-/// Reads what a RunFile wrote; the run may have been killed or be still going on.
+/// Reads a file that a RunFile wrote. The run may have been killed or may still be running.
 ///
-/// errors : InputError with the path if the file is missing, no HDF5 file, truncated, no run or
-///          from a later version, and if a part is asked for that the run was not to write
+/// errors : InputError with the path if the file does not exist, is not an HDF5 file, is truncated,
+///          is not a run or has a later format version, or if it does not have the requested part
 class RunReader final : public FrameReader {
 public:
   explicit RunReader(const std::filesystem::path& path);
 
-  [[nodiscard]] std::string status() const; ///< "running" if the run was killed
-  [[nodiscard]] std::string message() const;
-  [[nodiscard]] std::string
-  attribute(const std::string& name) const; ///< provenance, by name
-  [[nodiscard]] std::string scene_given() const;
-  [[nodiscard]] std::string scene_resolved() const;
+  /// A root attribute with text: "status" ("running" if the run was killed), "message", or one of
+  /// the Provenance.
+  [[nodiscard]] std::string attribute(const std::string& name) const;
+  /// The scene: "given" as it was read, or "resolved" with all defaults.
+  [[nodiscard]] std::string scene(const std::string& form) const;
 
-  /// Whether the run wrote that part: "observables", "frames", "deposit", "refinements", "budget",
+  /// Whether the file has a part: "observables", "frames", "deposit", "refinements", "budget" or
   /// "resolving_power".
   [[nodiscard]] bool has(const std::string& part) const;
-  /// All columns of a part, but frames and resolving power: in the order that the file gives, or
-  /// else alphabetically.
+  /// All columns of a part other than frames and resolving power, in the order that the file gives,
+  /// or otherwise alphabetically.
   [[nodiscard]] RunTable table(const std::string& part) const;
-  /// One of those columns.
+  /// One column of such a part.
   [[nodiscard]] std::vector<double> column(const std::string& part,
                                            const std::string& name) const;
   [[nodiscard]] ResolvingPowerTable resolving_power() const;
-  [[nodiscard]] Checkpoint checkpoint() const; ///< the last one
+  [[nodiscard]] Checkpoint checkpoint() const; ///< the last checkpoint
 };
 
 } // namespace ehdjet

@@ -13,48 +13,48 @@
 
 namespace ehdjet {
 
-/// What may be said about a run beside its scene.
+/// Options of a run that are not in its scene.
 struct RunOptions {
-  bool overwrite = false; ///< an existing file of that name
-  /// Number of threads during the run; by default that of the scene, or else OpenMP's.
+  bool overwrite = false; ///< overwrites an existing file of that name
+  /// Number of threads during the run; by default that of the scene, or otherwise of OpenMP.
   std::optional<std::size_t> threads;
-  /// A run file of the same scene, from whose last checkpoint the run goes on.
+  /// A run file of the same scene. The run continues from its last checkpoint.
   std::optional<std::filesystem::path> continue_from;
-  std::string scene_file; ///< where the scene was read from, for the run file
-  /// Further root attributes of the run file, beside those of `build_environment`.
+  std::string scene_file; ///< path of the scene, for the run file
+  /// Further root attributes of the run file, besides those of `build_environment`.
   std::map<std::string, std::string> provenance;
-  /// Force terms, events and observers that the scene does not know of. They are part of the
-  /// caller's program: a run that goes on from a checkpoint needs the same ones.
+  /// Force terms, events and observers of the calling program. To continue a run from a checkpoint,
+  /// the program must pass the same ones.
   Extras extras;
   /// Called once, after the file has been created and before the first step.
   std::function<void(Simulation&)> started;
-  /// Asked after each step: why the run is to stop, or nullptr.
+  /// Called after each step. Returns the reason to stop the run, or nullptr.
   std::function<const char*()> interrupted;
 };
 
 /// The end of a run.
 struct RunResult {
   std::string status;  ///< "complete" or "interrupted", as in the file
-  std::string message; ///< why it was interrupted, and when
+  std::string message; ///< the reason and time of an interruption
   JetState jet;
   RunStatistics statistics;
   Ledger ledger;
-  std::string coulomb_method; ///< what the solver has done; empty for the direct sum
-  std::optional<EffectiveTension::Summary> tension =
-      {}; ///< at the end; only with a near field
+  std::string coulomb_method; ///< description of the solver; empty for the direct sum
+  /// At the end; only with a near field.
+  std::optional<EffectiveTension::Summary> tension = {};
 };
 
-/// Version, commit, compiler, instruction set and threads of this library, by name: what every run
-/// file records.
+/// Version, commit, compiler, instruction set and threads of this library, by name. Every run file
+/// records them.
 std::map<std::string, std::string> build_environment();
 
-/// Simulates a scene and writes what its [output] asks for into a run file. The file has the
-/// status of the result, or "failed" and the message if an error ends the run.
+/// Simulates a scene and writes the parts that its [output] asks for into a run file. The file gets
+/// the status of the result, or "failed" and the message if an error ends the run.
 ///
 /// errors : InputError before the first step if the scene cannot be built, the file cannot be
 ///          created or the run cannot be continued;
-///          RunError if the run fails; its message says where the file is, which has everything
-///          up to then
+///          RunError if the run fails. Its message has the path of the file, which contains
+///          everything up to then
 RunResult run_scene(const Scene& scene, const std::filesystem::path& file,
                     RunOptions options = {});
 

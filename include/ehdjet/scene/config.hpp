@@ -1,6 +1,6 @@
 #pragma once
 
-#include "ehdjet/coulomb/solver_options.hpp"
+#include "ehdjet/coulomb/make_solver.hpp"
 #include "ehdjet/refinement/refine_jet.hpp"
 
 #include <cstddef>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "ehdjet/coulomb/solver_options.hpp"
+#include "ehdjet/coulomb/make_solver.hpp"
 #include "ehdjet/integrators/error_scale.hpp"
 #include "ehdjet/scene/config.hpp"
 #include "ehdjet/scene/read_scene.hpp"

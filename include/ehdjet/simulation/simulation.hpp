@@ -78,6 +78,7 @@ private:
   };
 
   double choose_step();
+  void advance(double h, double end_time);
   double attempt_step(double h);
   void note_method();
   [[nodiscard]] std::optional<std::size_t> vanishing_link() const;

@@ -7,10 +7,10 @@
 #include <cstddef>
 #include <functional>
 
-/// The paper's Table 2: what the jet of case I costs for each length of refinement.
+/// The paper's Table 2: the cost of the jet of case I for each refinement length.
 namespace ehdjet {
 
-/// A row as published: 0.2 s with RK4 and steps of 1e-8 s.
+/// A published row: 0.2 s with RK4 and steps of 1e-8 s.
 struct Table2Row {
   const char *name, *scene; ///< L~ in cm or "none"; scenes/<scene>.toml
   double length;            ///< L~ [m]; 0: none
@@ -24,17 +24,18 @@ inline constexpr std::array<Table2Row, 4> table2{
      {"0.4", "table2_04", 0.004, 509, 24, 24726, 0.62},
      {"0.2", "table2_02", 0.002, 1123, 24, 75793, 0.80}}};
 
-/// A row as measured here. Beads are links of the chain.
+/// A measured row. Beads are links of the chain.
 struct Table2Run {
-  double mean_beads = 0, stationary_beads = 0; ///< over all times, over the stationary ones
-  /// Right before each refinement of the stationary jet, which is what the published run would
-  /// have counted at its multiples of t_ref; not a number without refinements.
+  double mean_beads = 0,
+         stationary_beads = 0; ///< mean over all times, over the stationary times
+  /// Mean just before each refinement of the stationary jet. The published run would have counted
+  /// these beads at its multiples of t_ref. NaN without refinements.
   double beads_before = 0;
   RunStatistics statistics;
 };
 
-/// Runs a scene of the table on `threads` threads to `end_time` [s]; it is stationary from
-/// `stationary_from` on [s]. `prepare` may add observers, `after_step` is called after each step.
+/// Runs a scene of the table on `threads` threads to `end_time` [s]. The jet is stationary from
+/// `stationary_from` [s] on. `prepare` may add observers; `after_step` is called after each step.
 Table2Run run_table2(Scene scene, double end_time, double stationary_from,
                      std::size_t threads, const std::function<void(Simulation&)>& prepare,
                      const Simulation::StepHook& after_step = {});

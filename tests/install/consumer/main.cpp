@@ -1,7 +1,7 @@
 // Somebody else's program: two equal charges, joined by a viscoelastic link, push each other
 // apart. Composed by hand from the public headers, without a scene file.
 #include "ehdjet/core/version.hpp"
-#include "ehdjet/coulomb/direct_sum.hpp"
+#include "ehdjet/coulomb/make_solver.hpp"
 #include "ehdjet/dynamics/jet_dynamics.hpp"
 #include "ehdjet/forces/coulomb_force.hpp"
 #include "ehdjet/forces/maxwell.hpp"

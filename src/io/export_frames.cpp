@@ -1,26 +1,68 @@
 #include "ehdjet/core/error.hpp"
 #include "ehdjet/io/export.hpp"
 
+#include <algorithm>
+#include <cstdint>
 #include <cstring>
 #include <numeric>
-#include <string>
-#include <system_error>
+#include <span>
+#include <utility>
 #include <vector>
 
-#include "base64.hpp"
 #include "record_columns.hpp"
-#include "selected_frames.hpp"
 
 namespace ehdjet {
+namespace {
 
 namespace fs = std::filesystem;
 
-namespace {
+char species(const Frame& frame, std::size_t bead) {
+  if (bead == 0) return 'N';
+  if (frame["embryo"][bead] != 0) return 'E';
+  return frame["landed"][bead] != 0 ? 'L' : 'B';
+}
 
-// An array of a VTK XML file: its bytes after their number, in base64.
+void print_xyz(const Frame& frame, TextOutput& output) {
+  std::vector<std::vector<double>> columns;
+  for (const char* name : {"x", "y", "z", "vx", "vy", "vz", "radius", "stress", "charge"})
+    columns.push_back(column_or_zeros(frame, name));
+  std::string properties, units;
+  for (RunTable::Column& c : further_columns(frame)) {
+    properties += ":" + c.name + ":R:1", units += " " + c.unit;
+    columns.push_back(std::move(c.values));
+  }
+  output.print(
+      "{}\nProperties=species:S:1:pos:R:3:velo:R:3:radius:R:1:stress:R:1:charge:R:1{} "
+      "Time={:.17g} Units=\"s m m/s m Pa C{}\"\n",
+      frame.rows(), properties, frame.time, units);
+  for (std::size_t k = 0; k < frame.rows(); ++k) {
+    output.print("{}", species(frame, k));
+    for (const auto& column : columns) output.print(" {:.17g}", column[k]);
+    output.print("\n");
+  }
+}
+
+/// Base64 with padding (RFC 4648).
+std::string base64(std::span<const unsigned char> bytes) {
+  static constexpr char digits[] =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  text.reserve((bytes.size() + 2) / 3 * 4);
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    const std::size_t given = std::min<std::size_t>(bytes.size() - i, 3);
+    std::uint32_t group = 0;
+    for (std::size_t j = 0; j < 3; ++j)
+      group = group << 8U | (j < given ? bytes[i + j] : 0U);
+    for (std::size_t j = 0; j < 4; ++j)
+      text += j <= given ? digits[group >> (18 - 6 * j) & 63U] : '=';
+  }
+  return text;
+}
+
+/// An array of a VTK XML file: the number of its bytes and the bytes, in base64.
 template <class T>
-void print_array(TextOutput& output, const char* type, const char* name, int components,
-                 const std::vector<T>& values) {
+void print_array(TextOutput& output, const char* type, const std::string& name,
+                 int components, const std::vector<T>& values) {
   const std::uint64_t size = values.size() * sizeof(T);
   std::vector<unsigned char> bytes(sizeof size + size);
   std::memcpy(bytes.data(), &size, sizeof size);
@@ -47,20 +89,19 @@ void print_poly_line(const Frame& frame, TextOutput& output) {
   std::iota(connectivity.begin(), connectivity.end(), 0);
   output.print("<?xml version=\"1.0\"?>\n"
                "<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" "
-               "header_type=\"UInt64\">\n<PolyData>\n");
-  output.print("<FieldData>\n");
+               "header_type=\"UInt64\">\n<PolyData>\n<FieldData>\n");
   print_array(output, "Float64", "TimeValue", 1, std::vector<double>{frame.time});
-  output.print("</FieldData>\n");
-  output.print("<Piece NumberOfPoints=\"{}\" NumberOfVerts=\"0\" NumberOfLines=\"1\" "
-               "NumberOfStrips=\"0\" NumberOfPolys=\"0\">\n",
+  output.print("</FieldData>\n"
+               "<Piece NumberOfPoints=\"{}\" NumberOfVerts=\"0\" NumberOfLines=\"1\" "
+               "NumberOfStrips=\"0\" NumberOfPolys=\"0\">\n"
+               "<PointData Scalars=\"radius\" Vectors=\"velocity\">\n",
                frame.rows());
-  output.print("<PointData Scalars=\"radius\" Vectors=\"velocity\">\n");
   print_array(output, "Float64", "radius", 1, frame["radius"]);
   print_array(output, "Float64", "stress", 1, column_or_zeros(frame, "stress"));
   print_array(output, "Float64", "velocity", 3, vectors(frame, "vx", "vy", "vz"));
   print_array(output, "Float64", "charge", 1, frame["charge"]);
   for (const RunTable::Column& c : further_columns(frame))
-    print_array(output, "Float64", c.name.c_str(), 1, c.values);
+    print_array(output, "Float64", c.name, 1, c.values);
   output.print("</PointData>\n<Points>\n");
   print_array(output, "Float64", "Points", 3, vectors(frame, "x", "y", "z"));
   output.print("</Points>\n<Lines>\n");
@@ -74,51 +115,43 @@ void print_poly_line(const Frame& frame, TextOutput& output) {
 std::string escaped(const std::string& text) {
   std::string result;
   for (const char c : text) {
-    switch (c) {
-    case '&':
+    if (c == '&')
       result += "&amp;";
-      break;
-    case '<':
+    else if (c == '<')
       result += "&lt;";
-      break;
-    case '"':
+    else if (c == '"')
       result += "&quot;";
-      break;
-    default:
+    else
       result += c;
-    }
   }
   return result;
 }
 
-bool is_frame(const fs::path& file) {
-  const std::string name = file.filename().string();
-  return name.starts_with("frame_") && name.ends_with(".vtp");
-}
-
-// The folder for the frames; those of an earlier, longer export would be taken for ours.
+/// Creates the folder for the frames, or removes the frames of an earlier export from it: they
+/// might be more than the new ones.
 void prepare(const fs::path& folder, bool overwrite) {
+  refuse_existing(folder, overwrite);
   std::error_code error;
-  if (fs::exists(folder, error)) {
-    if (!overwrite) {
-      throw InputError(
-          folder.string()
-          + " exists: choose another name with -o or overwrite it with --force");
-    }
+  if (fs::create_directory(folder, error); !error)
     for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
-      if (is_frame(entry.path())) fs::remove(entry.path(), error);
+      const std::string name = entry.path().filename().string();
+      if (name.starts_with("frame_") && name.ends_with(".vtp"))
+        fs::remove(entry.path(), error);
     }
-  } else {
-    fs::create_directory(folder, error);
-  }
   if (error) throw InputError("cannot create " + folder.string() + ": " + error.message());
 }
 
 } // namespace
 
+void export_xyz(const RunReader& run, std::optional<double> time, TextOutput& output) {
+  const std::size_t last = run.nearest_frame(time);
+  for (std::size_t k = time ? last : 0; k <= last; ++k) print_xyz(run.frame(k), output);
+  output.close();
+}
+
 void export_vtk(const RunReader& run, std::optional<double> time, const fs::path& pvd,
                 bool overwrite) {
-  const FrameRange range = selected_frames(run, time);
+  const std::size_t last = run.nearest_frame(time);
   TextOutput collection(pvd, overwrite);
   const std::string folder = pvd.stem().string() + "_vtk";
   prepare(pvd.parent_path() / folder, overwrite);
@@ -127,7 +160,7 @@ void export_vtk(const RunReader& run, std::optional<double> time, const fs::path
       "<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n"
       "<!-- SI units: radius m, stress Pa, velocity m/s, charge C, time s -->\n"
       "<Collection>\n");
-  for (std::size_t k = range.first; k < range.end; ++k) {
+  for (std::size_t k = time ? last : 0; k <= last; ++k) {
     const Frame frame = run.frame(k);
     const std::string file = fmt::format("{}/frame_{:06}.vtp", folder, k);
     TextOutput output(pvd.parent_path() / file, overwrite);

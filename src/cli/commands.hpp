@@ -1,0 +1,25 @@
+#pragma once
+
+namespace CLI {
+class App;
+}
+
+/// Each function adds one command to the program.
+namespace ehdjet::cli {
+
+/// `ehdjet run SCENE`: simulates a scene and writes a run file.
+void add_run_command(CLI::App& app);
+/// `ehdjet check SCENE`: reports what a scene would simulate, without running it.
+void add_check_command(CLI::App& app);
+/// `ehdjet forces BEADS.csv`: the Coulomb force on given charges, with its time and error.
+void add_forces_command(CLI::App& app);
+/// `ehdjet export RUN.h5`: writes parts of a run file in formats that other programs read.
+void add_export_command(CLI::App& app);
+/// `ehdjet plot RUN.h5`: draws the jet and its observables on one page, with gnuplot.
+void add_plot_command(CLI::App& app);
+/// `ehdjet bench table2`: cost against the refinement length, next to the paper's Table 2.
+void add_bench_command(CLI::App& app);
+/// `ehdjet calibrate -o FILE`: measures the cost of the Coulomb solvers on this machine.
+void add_calibrate_command(CLI::App& app);
+
+} // namespace ehdjet::cli
