@@ -125,18 +125,80 @@ JetState make_room(const JetState& jet, const std::vector<Cut>& cuts,
   return roomy;
 }
 
+/// The change of a quantity of links over one link, between its ends: linear, from the two neighbours,
+/// and within them at both ends.
+///
+/// Where a jet thins, the parts of a link differ. Equal parts would make a staircase of the thickness,
+/// from which capillary necking grows.
+struct LinkSlope {
+  double above = 0, here = 0,
+         below = 0; // centres of the three links, distances from one to the next
+
+  [[nodiscard]] double change(double upper, double own, double lower) const {
+    const double up = own - upper, down = lower - own;
+    if (!(up * down > 0)) return 0;
+    const double mean = here * (up / (above + here) + down / (here + below));
+    const double size = std::min({std::abs(mean), 2 * std::abs(up), 2 * std::abs(down)});
+    return std::copysign(size, up);
+  }
+};
+
+/// What the parts of a link have: shares of its amounts, and their own values of columns of links.
+class Parts {
+public:
+  Parts(const JetState& jet, const Cut& cut, const RefinementRule& rule)
+      : cut_(cut)
+      , shares_(cut.parts, 1 / static_cast<double>(cut.parts)) {
+    const std::size_t k = cut.bead;
+    has_neighbours_ =
+        k > first_to_cut(jet, rule) && k + 1 < jet.beads() && !jet.is_landed(k);
+    if (!has_neighbours_) return;
+    slope_ = {.above = link_length(jet, k - 1),
+              .here = link_length(jet, k),
+              .below = link_length(jet, k + 1)};
+    const double own = jet.volume[k] / slope_.here;
+    const double change = slope_.change(jet.volume[k - 1] / slope_.above, own,
+                                        jet.volume[k + 1] / slope_.below);
+    for (std::size_t i = 0; i < cut.parts; ++i) shares_[i] *= 1 + change / own * place(i);
+  }
+  [[nodiscard]] const std::vector<double>& shares() const { return shares_; }
+
+  /// The sum of share times value is that of the link.
+  void values(std::span<const double> column, std::span<double> out) const {
+    const std::size_t k = cut_.bead;
+    const double change =
+        has_neighbours_ ? slope_.change(column[k - 1], column[k], column[k + 1]) : 0;
+    double mean = 0;
+    for (std::size_t i = 0; i < cut_.parts; ++i) mean += shares_[i] * place(i);
+    for (std::size_t i = 0; i < cut_.parts; ++i)
+      out[i] = column[k] + change * (place(i) - mean);
+  }
+
+private:
+  /// Middle of a part, from -1/2 to 1/2 along the link.
+  [[nodiscard]] double place(std::size_t i) const {
+    return (static_cast<double>(i) + 0.5) / static_cast<double>(cut_.parts) - 0.5;
+  }
+
+  Cut cut_;
+  bool has_neighbours_ = false;
+  LinkSlope slope_;
+  std::vector<double> shares_;
+};
+
 /// Fills in what the parts of a link have.
 void fill_parts(const JetState& jet, const Cut& cut, const RefinementRule& rule,
                 std::size_t last, JetState& refined) {
   const BeadTable& table = *jet.table;
   const std::size_t first = last - (cut.parts - 1);
   LocalCurve curve(jet, cut);
+  const Parts parts(jet, cut, rule);
   for (std::size_t c = 0; c < table.integrated().size(); ++c) {
-    const auto column = refined.columns().column(c).subspan(first, cut.parts - 1);
+    const auto column = refined.columns().column(c).subspan(first, cut.parts);
     if (table.integrated()[c].owner == Owner::link)
-      std::ranges::fill(column, jet.columns().column(c)[cut.bead]);
+      parts.values(jet.columns().column(c), column);
     else
-      curve.interpolate(jet.columns().column(c), column);
+      curve.interpolate(jet.columns().column(c), column.first(cut.parts - 1));
   }
   if (rule.collector)
     for (double& x : refined.columns().position().x.subspan(first, cut.parts - 1))
@@ -144,8 +206,10 @@ void fill_parts(const JetState& jet, const Cut& cut, const RefinementRule& rule,
   for (std::size_t c = 0; c < table.carried().size(); ++c) {
     const auto column = std::span(refined.carried(c)).subspan(first, cut.parts);
     const double whole = jet.carried(c)[cut.bead];
-    const bool is_shared = table.carried()[c].remap == ColumnRemap::share;
-    std::ranges::fill(column, is_shared ? whole / static_cast<double>(cut.parts) : whole);
+    std::ranges::fill(column, whole);
+    if (table.carried()[c].remap == ColumnRemap::share)
+      std::ranges::transform(parts.shares(), column.begin(),
+                             [whole](double share) { return share * whole; });
   }
 }
 

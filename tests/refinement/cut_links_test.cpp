@@ -4,7 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <vector>
 
 #include "refinement/jets.hpp"
@@ -45,7 +47,8 @@ TEST(Cuts, leave_all_other_beads_as_they_are) {
   EXPECT_LT(change->worst_link, 0.02);
   const auto place = [](std::size_t k) { return k < 5 ? k : k < 9 ? k + 2 : k + 3; };
   for (std::size_t k = 0; k <= 14; ++k)
-    for (std::size_t c = 0; c < 7; ++c)
+    for (std::size_t c = 0; c < (k == 5 || k == 9 ? 6U : 7U);
+         ++c) // links have new stresses
       EXPECT_EQ(jet.columns().column(c)[place(k)], old.columns().column(c)[k]) << k << c;
   for (std::size_t k = 1; k <= 14; ++k)
     if (k != 5 && k != 9) {
@@ -53,12 +56,49 @@ TEST(Cuts, leave_all_other_beads_as_they_are) {
       EXPECT_EQ(jet.mass[place(k)], old.mass[k]);
       EXPECT_EQ(jet.charge[place(k)], old.charge[k]);
     }
-  // Parts share what the link carried and have its stress.
-  for (const std::size_t k : {5U, 6U, 7U}) {
-    EXPECT_EQ(jet.volume[k], old.volume[5] / 3);
-    EXPECT_EQ(stress_of(jet.columns())[k], stress_of(old.columns())[5]);
+}
+
+// Volume, mass, charge and volume times stress of a link are those of its parts.
+TEST(Cuts, share_out_what_a_link_has) {
+  const JetState old = with_two_long_links();
+  JetState jet = old;
+  cut_links(jet, cutting(0.2));
+  for (const auto& [link, first, parts] : {std::array{5U, 5U, 3U}, {9U, 11U, 2U}}) {
+    double volume = 0, mass = 0, charge = 0, stress = 0;
+    for (std::size_t k = first; k < first + parts; ++k) {
+      EXPECT_GT(jet.volume[k], 0);
+      EXPECT_NEAR(jet.mass[k] / jet.volume[k], old.mass[link] / old.volume[link], 1e-14);
+      volume += jet.volume[k], mass += jet.mass[k], charge += jet.charge[k];
+      stress += jet.volume[k] * stress_of(jet.columns())[k];
+    }
+    EXPECT_NEAR(volume / old.volume[link], 1, 1e-15);
+    EXPECT_NEAR(mass / old.mass[link], 1, 1e-15);
+    EXPECT_NEAR(charge / old.charge[link], 1, 1e-15);
+    EXPECT_NEAR(stress / (old.volume[link] * stress_of(old.columns())[link]), 1, 1e-14);
   }
-  EXPECT_EQ(jet.mass[11] + jet.mass[12], old.mass[9]);
+}
+
+// The section of this jet falls linearly: so do those of the parts. Extrema stay as they are.
+TEST(Cuts, follow_a_thinning_jet) {
+  std::vector<double> links(9, 1.0);
+  links[4] = 2;
+  JetState jet = straight_jet(links);
+  double middle = 0;
+  for (std::size_t k = 1; k <= 9; ++k) {
+    middle += links[k - 1] / 2;
+    jet.volume[k] = links[k - 1] * (10 - 0.7 * middle);
+    stress_of(jet.columns())[k] = 3 + 0.4 * middle;
+    middle += links[k - 1] / 2;
+  }
+  JetState uniform = jet;
+  for (std::size_t k = 1; k <= 9; ++k) uniform.volume[k] = links[k - 1];
+  ASSERT_TRUE(cut_links(jet, cutting(1.5)));
+  EXPECT_NEAR(jet.volume[5], 10 - 0.7 * 4.5, 1e-14);
+  EXPECT_NEAR(jet.volume[6], 10 - 0.7 * 5.5, 1e-14);
+  EXPECT_NEAR(stress_of(jet.columns())[6] - stress_of(jet.columns())[5], 0.4, 1e-14);
+  ASSERT_TRUE(cut_links(uniform, cutting(1.5)));
+  EXPECT_EQ(uniform.volume[5], 1);
+  EXPECT_EQ(uniform.volume[6], 1);
 }
 
 // On the spline through all beads of the string, though only a few are looked at.

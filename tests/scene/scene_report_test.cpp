@@ -51,7 +51,7 @@ TEST(SceneReport, warns_of_what_a_thread_cannot_be) {
 TEST(SceneReport, of_a_pumped_jet_estimates_what_it_costs) {
   expect_all(scene_report(read_scene(EHDJET_SCENES "/converged.toml")),
              {"fed by a pump at 1.80556e-08 m^3/s and 1.86703e-07 A", "v_s = 2.2989 m/s",
-              "softened pairs", "links longer than 0.004 m are cut",
+              "softened pairs", "where links are longer than 0.004 m",
               "beads         at least", "evaluations   about"});
 }
 

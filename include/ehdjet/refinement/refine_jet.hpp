@@ -50,8 +50,10 @@ std::optional<MeshChange> refine_jet(JetState& jet, const RefinementRule& rule);
 
 /// Cuts each link that is longer than L~ into ceil(l/L~) parts and leaves all other beads as they are,
 /// bit for bit (model 7). New beads lie on Akima's curve through the neighbours, with a velocity from
-/// the same spline. Amounts are shared out equally; what else a link has, its parts have too. A new
-/// bead beyond the collector is put on it. The link that is being fed is left alone. Nothing if no
+/// the same spline. Amounts are shared out along the link with a section that is linear between those of
+/// the neighbours, and so are columns of links, whose sum weighted with the volume is kept; equal parts
+/// would make a staircase of the thickness, from which capillary necking grows. A new bead beyond the
+/// collector is put on it. The link that is being fed is left alone. Nothing if no
 /// link is too long.
 /// errors : RunError for more than ten million links
 std::optional<MeshChange> cut_links(JetState& jet, const RefinementRule& rule);
