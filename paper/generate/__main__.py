@@ -58,7 +58,7 @@ def used_keys(source: pathlib.Path) -> set[str]:
 
 
 def write_readme(run: RunFolder, folder: pathlib.Path) -> list[str]:
-    """Writes the two pictures and the table of the README; returns what is missing."""
+    """Writes the pictures and the table of the README; returns what is missing."""
     folder.mkdir(exist_ok=True)
     missing = []
     for name, panel in figures.HEADLINES.items():

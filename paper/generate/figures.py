@@ -407,6 +407,40 @@ def refinement(run: RunFolder):
     return panel_row(run, (path_convergence, resolving_power, varicosity), style.PAGE_WIDTH, 2.4)
 
 
+def path_against_links(axes, run: RunFolder) -> None:
+    """Path length against that of the finest mesh: points, a near field, and a pumped jet with its links at the nozzle."""
+    curves = {
+        r"points, against $\tilde l$": (queries.convergence_in_length(run, "point"), "length_m"),
+        r"near field, against $\tilde l$": (queries.convergence_in_length(run, "free-surface"), "length_m"),
+        r"pumped, near field, against $l_\mathrm{step}$": (queries.convergence_at_nozzle(run), "link_length_m"),
+    }
+    for (label, (rows, column)), look in zip(curves.items(), style.curve_styles(curves).values()):
+        axes.plot(1e3 * rows[column], 100 * (rows["path_length_m"] / rows["path_length_m"][0] - 1), label=label, **look)
+    axes.set_xscale("log")
+    axes.xaxis.set_major_formatter(ticker.FormatStrFormatter("%g"))
+    axes.axhline(0, color="#999999", linewidth=0.6)
+    axes.set_xlabel("length of the links (mm)")
+    axes.set_ylabel("path length, change from the finest mesh (%)")
+    axes.legend(loc="best")
+
+
+def wear_of_remaps(axes, run: RunFolder) -> None:
+    """Where the jet lands against the number of times that its mesh has changed in 20 ms."""
+    table = run["wear"].positive("distance_m").required("distances")
+    for mesh, look in style.curve_styles(("redistribute", "cut")).items():
+        rows = table.where(mesh=mesh).sorted_by("changes_of_the_mesh")
+        axes.plot(rows["changes_of_the_mesh"], 100 * rows["distance_m"], label=mesh, **look)
+    axes.set_xscale("log")
+    axes.set_xlabel("changes of the mesh in 20 ms")
+    axes.set_ylabel("distance of impact from the axis (cm)")
+    axes.legend(loc="upper left")
+
+
+def mesh(run: RunFolder):
+    """What converges, and what does not."""
+    return panel_row(run, (path_against_links, wear_of_remaps), style.PAGE_WIDTH, 2.6)
+
+
 def snapshots(run: RunFolder):
     """The jet at one instant for every refinement length: from the side and along its axis."""
     table = run["snapshots"].measured("x_m", "y_m", "z_m")
@@ -530,8 +564,13 @@ FIGURES = {
     "integrators": integrators,
     "stability": stability,
     "refinement": refinement,
+    "mesh": mesh,
     "snapshots": snapshots,
     "scaling": scaling,
     "physics": physics,
 }
-HEADLINES = {"error_against_time": error_against_time, "time_against_n": time_against_charges}
+HEADLINES = {
+    "error_against_time": error_against_time,
+    "time_against_n": time_against_charges,
+    "path_against_links": path_against_links,
+}

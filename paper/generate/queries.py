@@ -36,6 +36,19 @@ def solver_survey(run: RunFolder) -> Table:
     return table.where(distribution=distribution).sorted_by("charges")
 
 
+def convergence_in_length(run: RunFolder, near_field: str) -> Table:
+    """The PVP jet on redistributed meshes, finest first, everything else as in the base case."""
+    table = run["mesh"].where(jet="pvp", near_field=near_field, mesh="redistribute", solver="direct", interval_s=1e-3)
+    table = table.where(rtol=1e-5).positive("length_m", "path_length_m")
+    return table.required(f"the PVP jet, {near_field}").sorted_by("length_m")
+
+
+def convergence_at_nozzle(run: RunFolder) -> Table:
+    """The pumped jet, shortest links at the nozzle first."""
+    table = run["mesh"].where(jet="pumped").positive("link_length_m", "path_length_m")
+    return table.required("the pumped jet").sorted_by("link_length_m")
+
+
 def nearest(values: list[float], wanted: float) -> float:
     """The value nearest to the wanted one on a logarithmic scale."""
     if not values:

@@ -36,6 +36,16 @@ SCHEMA = {
     "refinement_conservation": ("remap", "refinements mass_error charge_error volume_error"),
     "resolving_power": ("mesh", "lambda resolving_power"),
     "varicosity": ("mesh", "arc_length_m radius_m"),
+    "mesh": (
+        "jet near_field mesh solver",
+        "link_length_m length_m interval_s rtol links path_length_m distance_m speed_m_s radius_m radius_scatter_m"
+        " evaluations_per_ms",
+    ),
+    "wear": (
+        "mesh",
+        "interval_s changes_of_the_mesh path_length_m distance_m speed_m_s radius_m radius_scatter_m"
+        " evaluations_per_ms",
+    ),
     "snapshots": ("", "length_m time_s bead x_m y_m z_m radius_m"),
     "physics": ("check source", "value reference relative_difference bound passed"),
     "dispersion": ("solver", "wavelength_m tolerance growth_rate_per_s theory_per_s relative_error"),

@@ -379,6 +379,60 @@ def finest_compared(run: RunFolder) -> Table:
     return table.where(length_m=min(table.values_of("length_m")))
 
 
+def register_spread(near_field: str) -> None:
+    """How much quantities change from the coarsest to the finest mesh, in per cent."""
+    for name, column in (("path", "path_length_m"), ("distance", "distance_m"), ("speed", "speed_m_s")):
+        @value(f"mesh/{near_field}/{name}")
+        def _(run, column=column):
+            values = queries.convergence_in_length(run, near_field)[column]
+            return tex.number(100 * abs(values[0] / values[-1] - 1))
+
+
+for _near_field in ("point", "free-surface"):
+    register_spread(_near_field)
+
+
+@value("mesh/finest/length")
+def _(run):
+    return tex.quantity(100 * queries.convergence_in_length(run, "free-surface")["length_m"][0], r"\centi\metre")
+
+
+def register_pumped(name: str, column: str, factor: float, digits: int) -> None:
+    """The pumped jet on its finest mesh, and how far the mesh with links twice as long is from it in per cent."""
+    @value(f"mesh/pumped/{name}")
+    def _(run):
+        return tex.number(factor * queries.convergence_at_nozzle(run)[column][0], digits)
+
+    @value(f"mesh/pumped/{name}/change")
+    def _(run):
+        values = queries.convergence_at_nozzle(run)[column]
+        return tex.number(100 * abs(values[1] / values[0] - 1))
+
+
+register_pumped("path", "path_length_m", 100, 4)
+register_pumped("distance", "distance_m", 100, 5)
+register_pumped("speed", "speed_m_s", 1, 5)
+register_pumped("radius", "radius_m", 1e6, 4)
+
+
+def register_wear(mesh: str) -> None:
+    """Against the mesh that is redistributed least often."""
+    @value(f"wear/{mesh}/changes")
+    def _(run):
+        return tex.count(largest(run["wear"].where(mesh=mesh)["changes_of_the_mesh"]))
+
+    @value(f"wear/{mesh}/distance")
+    def _(run):
+        table = run["wear"]
+        base = table.where(mesh="redistribute").sorted_by("changes_of_the_mesh")["distance_m"][0]
+        worn = table.where(mesh=mesh).sorted_by("changes_of_the_mesh")["distance_m"][-1]
+        return tex.number(100 * abs(worn / base - 1))
+
+
+for _mesh in ("redistribute", "cut"):
+    register_wear(_mesh)
+
+
 @value("convergence/finest/error")
 def _(run):
     return tex.number(100 * largest(finest_compared(run)["path_length_error"]))

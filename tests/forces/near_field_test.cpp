@@ -19,7 +19,6 @@ namespace {
 using namespace test;
 using Long = long double;
 
-
 // c = d + e and e from an independent computation.
 TEST(SubGrid, of_softened_pairs_has_the_published_values) {
   struct Row {
