@@ -148,6 +148,14 @@ void add_forces_command(CLI::App& app) {
                    "What the error is relative to: global, |F| over all charges; per-bead, "
                    "the sum of "
                    "the magnitudes of the pair forces on each charge")
+      ->check(CLI::Validator(
+          [](const std::string& given) {
+            return given == "moving"
+                       ? "moving needs a jet, in which beads move or rest; here "
+                         "all charges are alike: take global or per-bead"
+                       : std::string();
+          },
+          "global or per-bead"))
       ->transform(CLI::CheckedTransformer(std::map<std::string, ToleranceNorm>{
           {"global", ToleranceNorm::global}, {"per-bead", ToleranceNorm::per_bead}}));
   add_calibration_option(*command, options->calibration);

@@ -1,5 +1,6 @@
 #include "ehdjet/core/error.hpp"
 #include "ehdjet/runs/run_scene.hpp"
+#include "ehdjet/scene/scene_report.hpp"
 
 #include <cmath>
 #include <filesystem>
@@ -59,6 +60,12 @@ std::string summary(const RunResult& result, const Scene& scene,
                         cost.insertions, cost.releases, cost.landings);
   if (cost.refinements)
     text += fmt::format("  refinements   {} that changed the mesh\n", *cost.refinements);
+  if (scene.config.nozzle && jet.time > 0) {
+    const double flow = result.ledger.inserted_volume / jet.time;
+    text += fmt::format(
+        "  inflow        {:.4g} m^3/s ({:.4g} mL/h), {:.4g} A, means since t = 0\n", flow,
+        3.6e9 * flow, result.ledger.inserted_charge / jet.time);
+  }
   if (result.tension)
     text +=
         fmt::format("  tension       negative in {:.3g} % of the links, at least {:.3g} N; "
@@ -95,6 +102,8 @@ void run(const Options& options) {
     interrupt.emplace();
     if (options.quiet) return;
     const SceneConfig& c = scene.config;
+    for (const std::string& warning : near_field_warnings(c))
+      fmt::print(stderr, "warning: {}\n", warning);
     const double start = simulation.jet().time, end = c.run.end_time;
     fmt::print(stderr, "{}{}simulating {:.6g} s into {}\n", c.title,
                c.title.empty() ? "" : "\n", end - start, path.string());

@@ -69,6 +69,13 @@ Vec3 force_of_pair(const Vec3& d, double q1, double q2) {
          * u;
 }
 
+bool are_close(const Vec3& a, const Vec3& b, double scale) {
+  bool close = true;
+  for (int k = 0; k < 3; ++k)
+    close = close && std::abs(scale * a[k] - scale * b[k]) < close_distance;
+  return close;
+}
+
 } // namespace
 
 std::uint32_t& ClosePairs::list_of(const Cell& cell) {
@@ -103,14 +110,11 @@ std::size_t ClosePairs::add_forces(const PointCharges& sources, const PointCharg
       for (std::uint32_t at = list_of(cell); at != none; at = places_[at].next) {
         const Place& place = places_[at];
         if (cell_of(place.r, scale) != cell) continue; // another cell has the same hash
-        if (place.r == r) {
-          coincident += place.number;
-          continue;
-        }
-        bool close = true;
-        for (int k = 0; k < 3; ++k)
-          close = close && std::abs(scale * r[k] - scale * place.r[k]) < close_distance;
-        if (close && targets.q[i] != 0 && place.charge != 0) // avoids 0 * inf
+        const bool is_same = place.r == r;
+        if (is_same) coincident += place.number;
+        const bool acts =
+            !is_same && targets.q[i] != 0 && place.charge != 0; // avoids 0 * inf
+        if (acts && are_close(r, place.r, scale))
           force.add(i, force_of_pair(r - place.r, targets.q[i], place.charge));
       }
     });

@@ -109,9 +109,18 @@ bool LinkCuts::due(const JetState& jet) const {
   return has_long_link(jet, rule_) || has_short_links(jet, rule_);
 }
 
-void LinkCuts::apply(EventContext& context) {
+std::optional<double> LinkCuts::locate(const DenseStep& step) {
+  pass(step.t0); // multiples at which there was nothing to do
+  return std::nullopt;
+}
+
+void LinkCuts::pass(double t) {
   if (schedule_)
-    while (schedule_->next() <= context.jet.time * (1 + round_off)) schedule_->advance();
+    while (schedule_->next() <= t * (1 + round_off)) schedule_->advance();
+}
+
+void LinkCuts::apply(EventContext& context) {
+  pass(context.jet.time);
   change_mesh(context, rule_, totals_, cut_links);
 }
 

@@ -48,6 +48,7 @@ void check_inflow(const NozzleConfig& n, const SceneText& text) {
     exclude(refuse, "current", n.current, with);
     exclude(refuse, "nozzle_stress", n.nozzle_stress, with);
     exclude(refuse, "nozzle_charge_length", n.nozzle_charge_length, with);
+    exclude(refuse, "conductivity", n.conductivity, with);
     return;
   }
   const char* with = "inflow = \"pump\"";

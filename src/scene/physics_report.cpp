@@ -1,12 +1,16 @@
 #include "physics_report.hpp"
 
 #include "ehdjet/scene/dimensionless.hpp"
+#include "ehdjet/scene/scene_report.hpp"
 #include "ehdjet/scene/schema.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <numbers>
 #include <optional>
+#include <string>
+#include <vector>
 
 namespace ehdjet {
 namespace {
@@ -39,6 +43,22 @@ std::optional<double> flight_time(const SceneConfig& c) {
 
 } // namespace
 
+std::vector<std::string> near_field_warnings(const SceneConfig& c) {
+  std::vector<std::string> warnings;
+  if (!has_near_field(c)) return warnings;
+  if (c.surface_tension && c.surface_tension->form == SurfaceTensionForm::paper)
+    warnings.emplace_back("coulomb.near_field with surface_tension.form = \"paper\": on "
+                          "long links that form is a "
+                          "small part of the real tension. Take form = \"line\"");
+  if (c.nozzle && !softens_pairs(c)
+      && c.nozzle->link_length < thread_limit * c.nozzle->radius)
+    warnings.push_back(fmt::format("nozzle.link_length = {} m is less than {} radii: the "
+                                   "near field of point pairs pulls such "
+                                   "links together. Take coulomb.softened_pairs = true",
+                                   c.nozzle->link_length, thread_limit));
+  return warnings;
+}
+
 std::string physics_text(const Scene& scene) {
   const SceneConfig& c = scene.config;
   if (!c.nozzle) return "";
@@ -64,17 +84,14 @@ std::string physics_text(const Scene& scene) {
             "may branch, which a single chain cannot show",
             ratio));
   }
-  if (has_near_field(c)) {
-    if (c.surface_tension && c.surface_tension->form == SurfaceTensionForm::paper)
-      say(true,
-          "coulomb.near_field with surface_tension.form = \"paper\": on long links that "
-          "form is a small part of the real tension. Take form = \"line\"");
-    if (!softens_pairs(c) && n.link_length < thread_limit * n.radius)
-      say(true,
-          fmt::format("nozzle.link_length = {} m is less than {} radii: the near field of "
-                      "point pairs pulls such links together. Take "
-                      "coulomb.softened_pairs = true",
-                      n.link_length, thread_limit));
+  for (const std::string& warning : near_field_warnings(c)) say(true, warning);
+  if (const double field = field_strength(c); n.conductivity && field > 0) {
+    // Charge moves with the fluid where the current that it can conduct is small: a < a*.
+    const double current = std::abs(*n.flow_rate * n.fluid_charge_density());
+    say(false,
+        fmt::format(
+            "conduction ends where the jet is thinner than sqrt(I/(pi K E)) = {:.3g} m",
+            std::sqrt(current / (std::numbers::pi * *n.conductivity * field))));
   }
   if (n.inflow == InflowKind::pump && n.link_length > n.radius)
     say(false,

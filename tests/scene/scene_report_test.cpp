@@ -53,6 +53,11 @@ TEST(SceneReport, of_a_pumped_jet_estimates_what_it_costs) {
              {"fed by a pump at 1.80556e-08 m^3/s and 1.86703e-07 A", "v_s = 2.2989 m/s",
               "softened pairs", "where links are longer than 0.004 m",
               "beads         at least", "evaluations   about"});
+  // sqrt(I/(pi K E)) = sqrt(1.867e-7/(pi 1e-2 71201))
+  expect_all(
+      scene_report(
+          read_scene(EHDJET_SCENES "/converged.toml", {"nozzle.conductivity=1e-2"})),
+      {"conduction ends where the jet is thinner than sqrt(I/(pi K E)) = 9.14e-06 m"});
 }
 
 TEST(SceneReport, of_a_chain_names_its_beads_and_stiffest_link) {

@@ -55,7 +55,8 @@ public:
            Refinement::Totals totals = {});
   [[nodiscard]] std::string_view name() const override { return "refinement"; }
   [[nodiscard]] bool due(const JetState& jet) const override;
-  [[nodiscard]] std::optional<double> locate(const DenseStep&) override { return {}; }
+  /// Never inside a step.
+  [[nodiscard]] std::optional<double> locate(const DenseStep& step) override;
   [[nodiscard]] std::optional<double> predict(const DenseStep&) const override {
     return {};
   }
@@ -65,6 +66,8 @@ public:
   }
 
 private:
+  void pass(double t);
+
   RefinementRule rule_;
   std::optional<Schedule> schedule_;
   Refinement::Totals totals_;

@@ -58,6 +58,7 @@ struct NozzleConfig {
   std::optional<double> current = {};              ///< I = rho_q Q [A]
   std::optional<double> nozzle_stress = {};        ///< sigma_in [Pa]
   std::optional<double> nozzle_charge_length = {}; ///< L_n [m]
+  std::optional<double> conductivity = {};         ///< K, only for `ehdjet check` [S/m]
   bool operator==(const NozzleConfig&) const = default;
 
   [[nodiscard]] double section() const;              ///< A0 = pi a0^2 [m^2]

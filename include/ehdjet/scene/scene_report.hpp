@@ -3,13 +3,17 @@
 #include "ehdjet/scene/read_scene.hpp"
 
 #include <string>
+#include <vector>
 
 namespace ehdjet {
 
 /// What a scene means before it is run: every key with its unit, the dimensionless groups, the
-/// stability limits of explicit steps, and what will be simulated. Nothing in it is an estimate
-/// of the jet's motion; it follows from the scene by the formulas of dimensionless.hpp and
-/// stability.hpp.
+/// stability limits of explicit steps, what the scene is beyond as physics, what will be simulated,
+/// and what it costs. Only the cost is an estimate; all else follows from the scene by the formulas of
+/// dimensionless.hpp, stability.hpp and physics_report.cpp.
 std::string scene_report(const Scene& scene);
+
+/// What in a scene does not go together with its near field; for a run to say, too.
+[[nodiscard]] std::vector<std::string> near_field_warnings(const SceneConfig& config);
 
 } // namespace ehdjet

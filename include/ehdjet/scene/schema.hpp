@@ -170,6 +170,10 @@ void describe(V& v, NozzleConfig& c) {
   v.optional("nozzle_charge_length", c.nozzle_charge_length, positive("m", 1),
              "length of the charged fluid in a pump's nozzle that acts on the jet",
              "0.0002 with a pump");
+  v.optional("conductivity", c.conductivity, positive("S/m", 1e7),
+             "conductivity of a pumped fluid; `ehdjet check` says how thick a jet is where "
+             "conduction ends. A run does not use it",
+             "`ehdjet check` says nothing about it");
 }
 
 template <class V>
