@@ -194,8 +194,11 @@ JetTotals Balance::totals(const JetState& jet, bool with_coulomb_energy) {
   for (std::size_t i = 0; i < accounts_.size(); ++i) {
     ForceTerm& term = *dynamics_.terms()[i];
     if (accounts_[i].energy == "elastic_energy") totals.elastic_energy = term.energy(stage);
-    if (with_coulomb_energy && accounts_[i].energy == "coulomb_energy")
-      totals.coulomb_energy = term.energy(stage);
+    const std::string& energy = accounts_[i].energy;
+    if (with_coulomb_energy
+        && (energy == "coulomb_energy" || energy == "near_field_energy"
+            || energy == "softening_energy"))
+      totals.coulomb_energy += term.energy(stage);
   }
   return totals;
 }

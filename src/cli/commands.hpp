@@ -22,4 +22,8 @@ void add_bench_command(CLI::App& app);
 /// `ehdjet calibrate -o FILE`: measures the cost of the Coulomb solvers on this machine.
 void add_calibrate_command(CLI::App& app);
 
+/// Starts the program again with a bound on how long idle threads spin, unless the environment has one.
+/// Call first in `main`.
+void bound_waiting(char** argv);
+
 } // namespace ehdjet::cli

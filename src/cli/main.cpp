@@ -12,6 +12,7 @@
 // Exit codes: 0 success, 1 the run failed, 2 the input is wrong, 3 a bug in ehdjet.
 // NOLINTNEXTLINE(bugprone-exception-escape): the handlers themselves might throw
 int main(int argc, char** argv) {
+  ehdjet::cli::bound_waiting(argv);
   CLI::App app{"ehdjet: electrically charged jets as chains of beads", "ehdjet"};
   try {
     app.require_subcommand(1);

@@ -68,7 +68,7 @@ std::string summary(const RunResult& result, const Scene& scene,
   }
   if (result.tension)
     text +=
-        fmt::format("  tension       negative in {:.3g} % of the links, at least {:.3g} N; "
+        fmt::format("  tension       negative in {:.3g} % of the links, smallest {:.3g} N; "
                     "shortest link {:.3g} radii\n",
                     100 * result.tension->unstable_links, result.tension->smallest,
                     result.tension->shortest_in_radii);

@@ -48,14 +48,16 @@ const Stage& ActingChain::at(double t, std::span<const double> y, BeadRange targ
   stage_.targets = targets.within(mass_.size());
   stage_.sources = sources.within(mass_.size());
   stage_.invalidate();
-  if (absorbing_plane_) absorb(y);
   if (changes_content_) {
     const LinkContent now =
         constraints_.inflow->acting(full_, fed_since_, t, stage_.columns.position());
-    volume_[1] = now.volume, mass_[1] = now.mass, charge_[1] = now.charge;
+    volume_[1] = now.volume, mass_[1] = now.mass;
+    if (!constraints_.grounded_collector || support(1) != Support::collector)
+      charge_[1] = now.charge;
     if (!link_charge_.empty()) link_charge_[1] = now.charge;
     inverse_mass_[1] = 1 / now.mass;
   }
+  if (absorbing_plane_) absorb(y);
   return stage_;
 }
 

@@ -46,7 +46,10 @@ bool Landing::due(const JetState& jet) const {
 
 double Landing::touching_distance(const JetState& jet, std::size_t bead) {
   if (bead + 1 != jet.links() || !jet.is_landed(bead + 1)) return 0;
-  return std::cbrt(jet.volume[bead + 1] / std::numbers::pi);
+  const double area = jet.volume[bead + 1] / std::numbers::pi, // a^2 l
+      radius = jet.landed.back().radius;
+  // A link that was short when its bead landed has to shrink first.
+  return std::min(std::cbrt(area), 0.1 * area / (radius * radius));
 }
 
 bool Landing::has_arrived(const JetState& jet, std::size_t bead) const {
@@ -197,12 +200,13 @@ void Landing::remove_leading(EventContext& context, double time) {
   JetState& jet = context.jet;
   const std::size_t leading = jet.links();
   const LandedBead& landed = jet.landed.back();
+  const double length = link_length(jet, leading); // none where beads land on each other
   const DepositedBead deposited{
       .time = landed.time,
       .removal_time = time,
       .bead = bead_at(jet, leading),
       .landing_radius = landed.radius,
-      .radius = link_radius(jet.volume[leading], link_length(jet, leading))};
+      .radius = length > 0 ? link_radius(jet.volume[leading], length) : landed.radius};
   Ledger& ledger = context.ledger;
   ++ledger.removed_beads;
   ledger.removed_mass += deposited.bead.mass;

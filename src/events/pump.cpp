@@ -104,15 +104,21 @@ void FeedCut::apply(EventContext& context) {
   const LinkContent all{
       .volume = jet.volume[1], .mass = jet.mass[1], .charge = jet.charge[1]};
   const auto r = jet.columns().position(), v = jet.columns().velocity();
+  // V0/2, and what has flowed in since the time of the cut if that was within the step.
+  const LinkContent upper_part =
+      inflow_.acting(all, jet.fed_since, jet.time, std::as_const(jet).columns().position());
+  const double share = upper_part.volume / all.volume; // a third
   const Vec3 link = r[1] - r[0];
   const double section = all.volume / link.norm();
   Vec3 upper = v[0] + inflow_.rule().feed.flow_rate / section * link.normalized();
   upper.x() -= inflow_.nozzle().fluid_velocity; // the nozzle stays in its plane
 
   Bead born = bead_at(jet, 1); // the columns of its link are those of the whole link
-  born.position = r[0] + link / 3;
-  born.velocity = (2 * upper + v[1]) / 3;
-  born.volume = all.volume / 3, born.mass = all.mass / 3, born.charge = all.charge / 3;
+  const Vec3 lower = jet.is_landed(1) ? Vec3(Vec3::Zero()) : Vec3(v[1]);
+  born.position = r[0] + share * link;
+  born.velocity = (1 - share) * upper + share * lower;
+  born.volume = upper_part.volume, born.mass = upper_part.mass;
+  born.charge = upper_part.charge;
   jet.volume[1] = all.volume - born.volume;
   jet.mass[1] = all.mass - born.mass;
   jet.charge[1] = all.charge - born.charge;

@@ -98,14 +98,16 @@ void Refinement::apply(EventContext& context) {
 }
 
 LinkCuts::LinkCuts(const RefinementRule& rule, std::optional<double> interval,
-                   Refinement::Totals totals)
+                   Refinement::Totals totals, bool at_step_ends)
     : rule_(rule)
-    , totals_(std::move(totals)) {
+    , totals_(std::move(totals))
+    , at_step_ends_(at_step_ends) {
   if (interval) schedule_.emplace(*interval, 1);
 }
 
 bool LinkCuts::due(const JetState& jet) const {
   if (schedule_ && jet.time < schedule_->next() * (1 - round_off)) return false;
+  if (schedule_ && at_step_ends_) return true; // `apply` passes the multiple
   return has_long_link(jet, rule_) || has_short_links(jet, rule_);
 }
 

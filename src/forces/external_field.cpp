@@ -14,8 +14,6 @@ TermAccount ExternalField::account() const {
   return {.energy = "field_energy",
           .energy_meaning = "-sum q E x, charges as they act",
           .channel = {.name = "field",
-                      .energy = {},
-                      .energy_meaning = {},
                       .momentum = "field_impulse",
                       .momentum_meaning = "so far, of the field",
                       .axial = true}};

@@ -19,9 +19,7 @@ void FeedMomentum::add_derivatives(const Stage& stage, LinkDerivatives& derivati
 }
 
 TermAccount FeedMomentum::account() const {
-  return {.energy = {},
-          .energy_meaning = {},
-          .channel = {.name = "inflow",
+  return {.channel = {.name = "inflow",
                       .energy = "inflow_energy",
                       .energy_meaning =
                           "kinetic energy so far of the fluid that has flowed in, less "

@@ -8,9 +8,7 @@ TermAccount ForceTerm::account() const {
   std::string own(name());
   std::ranges::replace(own, ' ', '_');
   const std::string of = ", so far, of: " + std::string(name());
-  return {.energy = {},
-          .energy_meaning = {},
-          .channel = {.name = own,
+  return {.channel = {.name = own,
                       .energy = own + "_work",
                       .energy_meaning = "work on beads that move" + of,
                       .momentum = own + "_impulse",

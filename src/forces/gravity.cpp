@@ -14,8 +14,6 @@ TermAccount Gravity::account() const {
   return {.energy = "gravity_energy",
           .energy_meaning = "-sum m g x",
           .channel = {.name = "gravity",
-                      .energy = {},
-                      .energy_meaning = {},
                       .momentum = "gravity_impulse",
                       .momentum_meaning = "so far, of gravity",
                       .axial = true}};

@@ -132,8 +132,6 @@ TermAccount Maxwell::account() const {
       .channel = {.name = "dissipation",
                   .energy = "dissipated_energy",
                   .energy_meaning = "lost so far to viscosity, sum V sigma^2/mu over time",
-                  .momentum = {},
-                  .momentum_meaning = {},
                   .loss = true}};
 }
 

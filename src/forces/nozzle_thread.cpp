@@ -15,7 +15,8 @@ void NozzleThread::add_force(const Stage& stage, Vec3View force) {
                core = radius_ * radius_;
   const double y0 = y[0], z0 = z[0];
   double sum_x = 0, sum_y = 0, sum_z = 0;
-  const BeadRange targets = stage.targets.within(stage.beads());
+  BeadRange targets = stage.targets.within(stage.beads());
+  if (targets.begin == 0) targets.end = stage.beads(); // bead 0 feels them all
 #pragma omp simd reduction(+ : sum_x, sum_y, sum_z)
   for (std::size_t k = std::max<std::size_t>(targets.begin, 1); k < targets.end; ++k) {
     const double dy = y[k] - y0, dz = z[k] - z0;

@@ -58,8 +58,10 @@ void SoftenedPairs::set_radii(const Stage& stage) {
       const double l = (r[2] - r[0]).norm(), f = options_.embryo->charge_fraction(l),
                    rest = l - options_.embryo->link_length,
                    area = stage.volume[2] / std::numbers::pi;
-      square_[2] = area * ((1 - f) / l + f / rest);
-      square_slope_[2] = -area * ((1 - f) / (l * l) + f / (rest * rest));
+      if (f > 0) { // before that the rest of the link may have no length
+        square_[2] = area * ((1 - f) / l + f / rest);
+        square_slope_[2] = -area * ((1 - f) / (l * l) + f / (rest * rest));
+      }
     }
   }
   square_[0] = square_[std::min(head, n - 1)], square_slope_[0] = 0;
@@ -91,8 +93,10 @@ void SoftenedPairs::add_force(const Stage& stage, Vec3View force) {
   energy_slope_.assign(stage.beads(), 0.0);
   const auto r = stage.columns.position();
   const BeadRange targets = stage.targets.within(stage.beads());
+  // The radius of bead 0 is that of the first link, and the link below the last target pulls, too.
+  const std::size_t begin = targets.begin <= stage.first ? 0 : targets.begin;
   for_each_pair(
-      stage, targets.begin, targets.end + 1, // the link below the last target, too
+      stage, begin, targets.end + 1,
       [&](std::size_t i, std::size_t j, double charges, double distance, double square) {
         const Kernel k = kernel(distance, square);
         const Vec3 f = (-constants::coulomb * charges * k.slope / distance) * (r[i] - r[j]);
@@ -154,9 +158,10 @@ double SoftenedPairs::feeding_power(const Stage& stage, const LinkContent& rate)
     const auto v = stage.columns.velocity();
     const double l = stage.links().length[2], rest = l - options_.embryo->link_length;
     const Vec3 stretching(v.x[2], v.y[2] - v.y[0], v.z[2] - v.z[0]);
-    square_rate = stage.volume[2] / std::numbers::pi * (1 / rest - 1 / l)
-                  * options_.embryo->charge_fraction_slope(l)
-                  * stretching.dot(stage.links().vector(2)) / l;
+    const double slope = options_.embryo->charge_fraction_slope(l);
+    if (slope > 0)
+      square_rate = stage.volume[2] / std::numbers::pi * (1 / rest - 1 / l) * slope
+                    * stretching.dot(stage.links().vector(2)) / l;
   }
   return constants::coulomb * (by_charge * rate.charge + by_square * square_rate);
 }

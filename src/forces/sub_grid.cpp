@@ -50,7 +50,7 @@ SubGrid sub_grid_of_softened(double eta) {
   SubGrid s{.d = 1 / (2 * eta), .e = -1 / (2 * eta), .f = 1 / (2 * eta)};
   for (double k = 1;; ++k) {
     const double x = 2 * pi * k * eta;
-    if (x > 40) return s; // K0(40) = 8e-19
+    if (!(x <= 40)) return s; // K0(40) = 8e-19; also ends a state that is not a number
     const double k0 = gsl_sf_bessel_K0(x), k1 = gsl_sf_bessel_K1(x);
     s.d -= 2 * k0, s.e += 2 * x * k1, s.f -= 2 * x * x * k0;
   }

@@ -33,9 +33,7 @@ void BendingSurfaceTension::add_force(const Stage& stage, Vec3View force) {
 }
 
 TermAccount BendingSurfaceTension::account() const {
-  return {.energy = {},
-          .energy_meaning = {},
-          .channel = {.name = "surface",
+  return {.channel = {.name = "surface",
                       .energy = "surface_work",
                       .energy_meaning =
                           "work so far of the paper's surface tension, which has "

@@ -143,7 +143,7 @@ std::vector<RecordColumn<RefinementRecord>> refinement_columns() {
        change_of(&JetTotals::kinetic_energy)},
       {{"elastic_energy_change", "J", "of the sum of V sigma^2/(2G)"},
        change_of(&JetTotals::elastic_energy)},
-      {{"coulomb_energy_change", "J", "of all pairs of beads"},
+      {{"coulomb_energy_change", "J", "of all pairs of beads and of the near field"},
        change_of(&JetTotals::coulomb_energy)},
       {{"worst_link", "1",
         "largest |l/l* - 1| of the new links' chords l, where l* is the arc length that "

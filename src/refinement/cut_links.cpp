@@ -132,7 +132,7 @@ JetState make_room(const JetState& jet, const std::vector<Cut>& cuts,
 /// from which capillary necking grows.
 struct LinkSlope {
   double above = 0, here = 0,
-         below = 0; // centres of the three links, distances from one to the next
+         below = 0; // lengths of the link above, of this one, of the one below
 
   [[nodiscard]] double change(double upper, double own, double lower) const {
     const double up = own - upper, down = lower - own;

@@ -36,19 +36,20 @@ void exclude(const Refuse& refuse, const char* key, const std::optional<T>& valu
                             with));
 }
 
-void check_inflow(const NozzleConfig& n, const SceneText& text) {
+void check_inflow(const SceneConfig& c, const SceneText& text) {
+  const NozzleConfig& n = *c.nozzle;
   const auto refuse = [&](const char* key, const std::string& why) {
     text.fail(*key == 0 ? "nozzle" : fmt::format("nozzle.{}", key), why);
   };
   if (n.inflow == InflowKind::embryo) {
     const char* with = "inflow = \"embryo\" (the default)";
-    need(refuse, "velocity", n.velocity, with);
-    need(refuse, "charge_density", n.charge_density, with);
     exclude(refuse, "flow_rate", n.flow_rate, with);
     exclude(refuse, "current", n.current, with);
     exclude(refuse, "nozzle_stress", n.nozzle_stress, with);
     exclude(refuse, "nozzle_charge_length", n.nozzle_charge_length, with);
     exclude(refuse, "conductivity", n.conductivity, with);
+    need(refuse, "velocity", n.velocity, with);
+    need(refuse, "charge_density", n.charge_density, with);
     return;
   }
   const char* with = "inflow = \"pump\"";
@@ -63,6 +64,15 @@ void check_inflow(const NozzleConfig& n, const SceneText& text) {
   if (!n.current && !n.charge_density)
     refuse("", "neither nozzle.current nor nozzle.charge_density is given: exactly one of "
                "them is needed with inflow = \"pump\"");
+  if (!c.coulomb)
+    exclude(refuse, "nozzle_charge_length", n.nozzle_charge_length,
+            "no [coulomb]: charges do not act on each other");
+  const bool has_stress = c.viscoelasticity && c.viscoelasticity->elastic_modulus > 0
+                          && c.viscoelasticity->viscosity > 0;
+  if (!has_stress)
+    exclude(
+        refuse, "nozzle_stress", n.nozzle_stress,
+        "no [viscoelasticity], or one without modulus or viscosity: there is no stress");
   if (n.insertion_velocity != InsertionVelocity::half)
     refuse("insertion_velocity",
            fmt::format("nozzle.insertion_velocity = \"{}\" has no meaning with {}: no bead "
@@ -81,9 +91,10 @@ void check_jet(const SceneConfig& c, const SceneText& text) {
         "neither [nozzle] nor [chain] is given: exactly one of them says what the jet is");
   if (!c.nozzle) return;
 
-  check_inflow(*c.nozzle, text);
+  check_inflow(c, text);
   const double a = c.nozzle->radius, l = c.nozzle->link_length;
-  if (a > l && !softens_pairs(c))
+  const bool has_no_pairs = c.nozzle->inflow == InflowKind::pump && !c.coulomb;
+  if (a > l && !softens_pairs(c) && !has_no_pairs)
     text.fail("nozzle.radius",
               fmt::format(
                   "nozzle.radius = {} m and nozzle.link_length = {} m: the radius must be "

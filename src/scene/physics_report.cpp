@@ -10,6 +10,7 @@
 #include <numbers>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace ehdjet {
@@ -31,7 +32,13 @@ double rayleigh_ratio(const NozzleConfig& n, double surface_tension) {
          / (8 * vacuum_permittivity * surface_tension);
 }
 
-/// How long a bead from rest that only field and gravity pull takes to the collector [s].
+/// The shortest of the first links: that of a pump after a cut [m].
+double shortest_first_link(const NozzleConfig& n) {
+  return n.inflow == InflowKind::pump ? n.link_length / 2 : n.link_length;
+}
+
+/// How long a bead that leaves the nozzle with the fluid takes to the collector if only field and gravity
+/// pull at it [s].
 std::optional<double> flight_time(const SceneConfig& c) {
   if (!c.nozzle || !c.collector) return std::nullopt;
   const double a = c.nozzle->fluid_charge_density() / c.nozzle->density * field_strength(c)
@@ -41,33 +48,14 @@ std::optional<double> flight_time(const SceneConfig& c) {
   return (std::sqrt(v * v + 2 * a * c.collector->distance) - v) / a;
 }
 
-} // namespace
-
-std::vector<std::string> near_field_warnings(const SceneConfig& c) {
-  std::vector<std::string> warnings;
-  if (!has_near_field(c)) return warnings;
-  if (c.surface_tension && c.surface_tension->form == SurfaceTensionForm::paper)
-    warnings.emplace_back("coulomb.near_field with surface_tension.form = \"paper\": on "
-                          "long links that form is a "
-                          "small part of the real tension. Take form = \"line\"");
-  if (c.nozzle && !softens_pairs(c)
-      && c.nozzle->link_length < thread_limit * c.nozzle->radius)
-    warnings.push_back(fmt::format("nozzle.link_length = {} m is less than {} radii: the "
-                                   "near field of point pairs pulls such "
-                                   "links together. Take coulomb.softened_pairs = true",
-                                   c.nozzle->link_length, thread_limit));
-  return warnings;
-}
-
-std::string physics_text(const Scene& scene) {
-  const SceneConfig& c = scene.config;
-  if (!c.nozzle) return "";
+std::string nozzle_text(const SceneConfig& c) {
   const NozzleConfig& n = *c.nozzle;
   std::string text;
   const auto say = [&text](bool is_warning, const std::string& what) {
     text += fmt::format("  {}{}\n", is_warning ? "WARNING: " : "", what);
   };
-  if (n.fluid_charge_density() != 0) {
+  const bool has_charge = n.fluid_charge_density() != 0;
+  if (has_charge) {
     const double field = surface_field(n);
     say(field > breakdown_of_air,
         fmt::format(
@@ -75,8 +63,7 @@ std::string physics_text(const Scene& scene) {
             "at {:.0e} V/m",
             field, breakdown_of_air));
   }
-  if (c.surface_tension && c.surface_tension->coefficient > 0
-      && n.fluid_charge_density() != 0) {
+  if (has_charge && c.surface_tension && c.surface_tension->coefficient > 0) {
     const double ratio = rayleigh_ratio(n, c.surface_tension->coefficient);
     say(ratio > 1,
         fmt::format(
@@ -84,8 +71,7 @@ std::string physics_text(const Scene& scene) {
             "may branch, which a single chain cannot show",
             ratio));
   }
-  for (const std::string& warning : near_field_warnings(c)) say(true, warning);
-  if (const double field = field_strength(c); n.conductivity && field > 0) {
+  if (const double field = std::abs(field_strength(c)); n.conductivity && field > 0) {
     // Charge moves with the fluid where the current that it can conduct is small: a < a*.
     const double current = std::abs(*n.flow_rate * n.fluid_charge_density());
     say(false,
@@ -99,47 +85,67 @@ std::string physics_text(const Scene& scene) {
                     "the nozzle a jet converges only with links that are at most as long "
                     "as its radius",
                     n.link_length, n.radius));
+  return text;
+}
+
+} // namespace
+
+std::vector<std::string> near_field_warnings(const SceneConfig& c) {
+  std::vector<std::string> warnings;
+  if (!has_near_field(c)) return warnings;
+  if (c.surface_tension && c.surface_tension->form == SurfaceTensionForm::paper)
+    warnings.emplace_back("coulomb.near_field with surface_tension.form = \"paper\": on "
+                          "long links that form is a "
+                          "small part of the real tension. Take form = \"line\"");
+  if (c.nozzle && !softens_pairs(c)
+      && shortest_first_link(*c.nozzle) < thread_limit * c.nozzle->radius)
+    warnings.push_back(
+        fmt::format("nozzle.link_length = {} m makes links of less than {} radii: the near "
+                    "field of point "
+                    "pairs pulls such links together. Take coulomb.softened_pairs = true",
+                    c.nozzle->link_length, thread_limit));
+  return warnings;
+}
+
+std::string physics_text(const Scene& scene) {
+  const SceneConfig& c = scene.config;
+  std::string text;
+  if (c.nozzle) text = nozzle_text(c);
+  for (const std::string& warning : near_field_warnings(c))
+    text += fmt::format("  WARNING: {}\n", warning);
   return text.empty() ? text : "\nPhysics\n" + text;
 }
 
 std::string cost_text(const Scene& scene) {
   const SceneConfig& c = scene.config;
   const auto flight = flight_time(c);
-  if (!flight || !c.integrator.rtol) return "";
-  // A straight jet has the fewest beads; a whipping one has several times as many.
-  double beads = 0;
-  if (c.nozzle->inflow == InflowKind::pump)
-    beads = *c.nozzle->flow_rate / (c.nozzle->section() * c.nozzle->link_length) * *flight;
+  if (!flight || !c.integrator.rtol || c.nozzle->inflow != InflowKind::pump) return "";
+  const double cuts_per_second =
+      *c.nozzle->flow_rate / (c.nozzle->section() * c.nozzle->link_length);
+  double beads = cuts_per_second * *flight;
   if (c.refinement) beads = std::max(beads, c.collector->distance / c.refinement->length);
-  if (beads < 1) return "";
   std::string text =
-      fmt::format("\nCost\n  beads         at least {:.0f}, those of a straight "
-                  "jet; a whipping one has several times as many\n",
-                  beads);
-  if (c.coulomb) {
+      fmt::format("\nCost, rough estimates\n  beads         {:.0f}, those of a straight "
+                  "jet without mutual "
+                  "repulsion{}\n",
+                  beads, c.refinement ? "; refinement of a whipping jet adds to them" : "");
+  // 38 to 78 between cuts at rtol 1e-5 (scenes/converged.toml, five lengths of links); steps of a
+  // fifth-order pair get shorter with the fifth root of rtol.
+  const double evaluations =
+      50 * std::pow(1e-5 / *c.integrator.rtol, 0.2) * cuts_per_second * c.run.end_time;
+  text += fmt::format("  evaluations   {:.1e}\n", evaluations);
+  if (c.coulomb && c.coulomb->solver != "treecode") { // for which there is no table
+    const CoulombConfig& s = *c.coulomb;
     const auto n = static_cast<std::size_t>(std::max(beads, 2.0));
     const CostModel& costs = scene.costs ? *scene.costs : CostModel::shipped();
-    const std::string solver = c.coulomb->solver == "auto"
-                                   ? std::string(costs.cheapest(n, c.coulomb->tolerance))
-                                   : c.coulomb->solver;
-    if (solver != "treecode")
-      text += fmt::format(
-          "  evaluation    {:.2g} s of the Coulomb force of so many beads, on one "
-          "core\n",
-          costs.cost(solver, n, c.coulomb->tolerance));
-  }
-  if (c.nozzle->inflow == InflowKind::pump) {
-    // 38 to 43 between cuts at rtol 1e-5 (scenes/converged.toml, four lengths of links); steps of a
-    // fifth-order pair get shorter with the fifth root of rtol.
-    const double per_cut = 40 * std::pow(1e-5 / *c.integrator.rtol, 0.2);
-    const double cuts = *c.nozzle->flow_rate * c.run.end_time
-                        / (c.nozzle->section() * c.nozzle->link_length);
-    text += fmt::format("  evaluations   about {:.1e}\n", per_cut * cuts);
+    const std::string_view solver =
+        s.solver == "auto" ? costs.cheapest(n, s.tolerance) : std::string_view(s.solver);
+    text += fmt::format("  wall time     {:.2g} s on one core\n",
+                        evaluations * costs.cost(solver, n, s.tolerance));
   }
   if (c.output.frames) {
-    const double columns =
-        14; // place, velocity, stress, radius, volume, mass, charge, marks
-    text += fmt::format("  run file      at least {:.3g} MB of frames\n",
+    constexpr double columns = 14; // place, velocity, stress, radius, contents, marks
+    text += fmt::format("  run file      {:.3g} MB of frames\n",
                         8e-6 * columns * beads * c.run.end_time / *c.output.frames);
   }
   return text;

@@ -6,9 +6,10 @@
 
 namespace ehdjet {
 
-/// What a physicist should know about a jet before it runs: surface field, Rayleigh limit, links that
-/// are too short or lack a near field, flow of a pump; and what a run costs. Warnings, not refusals.
+/// What a physicist should know about a jet before it runs: field at its surface, Rayleigh limit, end of
+/// conduction, links that are too short for their near field. Warnings, not refusals.
 [[nodiscard]] std::string physics_text(const Scene& scene);
+/// Beads, evaluations, wall time and file size of a pumped jet; the flow of others is not known before.
 [[nodiscard]] std::string cost_text(const Scene& scene);
 
 } // namespace ehdjet

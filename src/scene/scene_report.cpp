@@ -89,6 +89,8 @@ std::string forces_text(const Scene& scene) {
   if (c.gravity)
     forces.push_back(fmt::format("gravity {:.6g} m/s^2", c.gravity->acceleration));
   if (c.coulomb) forces.push_back(fmt::format("Coulomb ({})", coulomb_text(scene)));
+  if (c.coulomb && c.nozzle && c.nozzle->inflow == InflowKind::pump)
+    forces.emplace_back("charge in the nozzle");
   if (has_near_field(c))
     forces.push_back(fmt::format("near field ({}{})",
                                  name_of(c.coulomb->near_field, near_field_forms),
@@ -176,10 +178,12 @@ std::string run_text(const Scene& scene) {
   const auto& i = c.integrator;
   std::string text = "\nWhat will be simulated\n";
   text += fmt::format("  jet: {}\n  forces: {}\n", jet_text(scene), forces_text(scene));
-  text += c.collector ? fmt::format(
-              "  collector: beads land at x = {} m and leave the chain; their charge is "
-              "{}\n",
-              c.collector->distance, name_of(c.collector->charge, collector_charges))
+  text += c.collector ? fmt::format("  collector: beads land at x = {} m and leave the "
+                                    "chain; the charge of a landed bead {}\n",
+                                    c.collector->distance,
+                                    c.collector->charge == CollectorCharge::grounded
+                                        ? "no longer acts"
+                                        : "acts until it leaves")
                       : "  collector: none, beads fly on\n";
   if (c.varicosity)
     text += fmt::format(

@@ -82,7 +82,8 @@ std::unique_ptr<Event> build_refinement(const SceneConfig& c, const JetDynamics&
                  const JetState& jet) { return balance->totals(jet, with_coulomb); };
   if (c.refinement->mesh == RefinedMesh::cut)
     return std::make_unique<LinkCuts>(refinement_rule(c), c.refinement->interval,
-                                      std::move(totals));
+                                      std::move(totals),
+                                      c.integrator.events == EventPlacement::step_end);
   return std::make_unique<Refinement>(refinement_rule(c), *c.refinement->interval,
                                       std::move(totals),
                                       c.integrator.events == EventPlacement::step_end);

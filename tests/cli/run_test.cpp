@@ -198,4 +198,22 @@ TEST(Check, documents_every_key) {
     EXPECT_THAT(o.out, HasSubstr(key));
 }
 
+// Only GCC's OpenMP runtime spins for long, and only when it is loaded does it ask how long it may.
+TEST(Threads, wait_for_a_bounded_time_unless_the_user_says_otherwise) {
+#ifdef __clang__
+  GTEST_SKIP();
+#endif
+  const Folder folder;
+  const auto environment = [&](const std::string& setting) {
+    return command(folder, "--version",
+                   "env -u OMP_WAIT_POLICY -u GOMP_SPINCOUNT OMP_DISPLAY_ENV=VERBOSE "
+                       + setting)
+        .err;
+  };
+  EXPECT_THAT(environment(""), HasSubstr("GOMP_SPINCOUNT = '1000'"));
+  EXPECT_THAT(environment("GOMP_SPINCOUNT=77"),
+              AllOf(HasSubstr("GOMP_SPINCOUNT = '77'"), Not(HasSubstr("'1000'"))));
+  EXPECT_THAT(environment("OMP_WAIT_POLICY=passive"), Not(HasSubstr("'1000'")));
+}
+
 } // namespace

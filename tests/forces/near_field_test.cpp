@@ -61,6 +61,13 @@ TEST(SubGrid, has_the_derivatives_that_it_says) {
     }
 }
 
+// A step that has blown up must fail, not go on for ever.
+TEST(SubGrid, of_no_number_is_no_number) {
+  const double none = std::nan("");
+  EXPECT_TRUE(std::isnan(sub_grid_of_softened(none).d));
+  EXPECT_TRUE(std::isnan(sub_grid_of_points(none).d));
+}
+
 TEST(SubGrid, of_softened_pairs_goes_over_into_that_of_points) {
   const double eta = 1e-4;
   EXPECT_NEAR(sub_grid_of_softened(eta).d, sub_grid_of_points(eta).d, 1e-8);
@@ -241,6 +248,25 @@ TEST(SoftenedPairs, are_absent_where_links_are_long) {
   Chain chain = random_chain(100, 2);
   SoftenedPairs pairs({});
   for (const Vec3& f : chain.force(pairs)) EXPECT_EQ(f.norm(), 0);
+}
+
+// Behind an embryo, too, where the radius of bead 0 is that of link 2.
+TEST(SoftenedPairs, of_a_part_behind_an_embryo_are_those_of_the_whole) {
+  const Embryo embryo{.link_length = 2e-4};
+  Chain chain = with_embryo(3.5e-4, 2e-4);
+  chain.first = 2;
+  for (double& volume : chain.volume) volume *= 20;
+  SoftenedPairs pairs({.embryo = embryo});
+  const auto whole = chain.force(pairs);
+  Stage& stage = chain.stage();
+  stage.targets = {2, 5};
+  stage.invalidate();
+  const std::size_t n = chain.beads;
+  std::vector<double> f(3 * n);
+  const std::span<double> all(f);
+  pairs.add_force(stage, {all.subspan(0, n), all.subspan(n, n), all.subspan(2 * n, n)});
+  for (std::size_t k = 2; k < 5; ++k)
+    EXPECT_NEAR(f[k], whole[k].x(), 1e-12 * whole[k].norm()) << k;
 }
 
 // What a row of beads feels is what each pair at its ends gives, whichever part is asked for.

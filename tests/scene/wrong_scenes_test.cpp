@@ -238,6 +238,13 @@ const Wrong wrong_scenes[] = {
      "velocity = 3e-3",
      "inflow = \"pump\"\nflow_rate = 1e-8",
      {"s.toml:", "nozzle.link_length = 0.0002 m", "collapse", "at least 6 radii"}},
+    {"stress_of_a_pump_without_any",
+     "velocity = 3e-3\ndensity = 840\ncharge_density = 14.7\n[collector]\ndistance = "
+     "0.16\n[field]\npotential = 9000\n[gravity]\nacceleration = "
+     "9.80665\n[coulomb]\n[viscoelasticity]\nelastic_modulus = 5e3\nviscosity = 2\n",
+     "inflow = \"pump\"\nflow_rate = 1e-8\ndensity = 840\ncharge_density = 14.7\n"
+     "nozzle_stress = 5\n[collector]\ndistance = 0.16\n[field]\npotential = 9000\n",
+     {"s.toml:11: ", "nozzle.nozzle_stress = 5", "[viscoelasticity]"}},
     {"flow_rate_without_a_pump",
      "velocity = 3e-3",
      "velocity = 3e-3\nflow_rate = 1e-8",

@@ -124,6 +124,19 @@ TEST(PumpedJet, is_cut_at_known_times) {
     EXPECT_NEAR(simulation->jet().volume[k] / v0, 1, 1e-14) << k;
 }
 
+// A cut that comes late, at the end of a step, cuts what the link holds by then.
+TEST(PumpedJet, holds_what_has_been_pumped_with_events_at_step_ends) {
+  Scene scene = straight_pumped(20 * mL_h, 20 * poise, 0.02 * cm);
+  scene.config.integrator.events = EventPlacement::step_end;
+  scene.config.integrator.max_step = 1e-4;
+  const double q = *scene.config.nozzle->flow_rate,
+               start = scene.config.nozzle->section() * 0.02 * cm / 2;
+  auto simulation = build_simulation(scene);
+  simulation->run_until(10e-3);
+  EXPECT_GT(simulation->statistics().insertions, 30U);
+  EXPECT_NEAR(sum_from_one(simulation->jet().volume) / (start + q * 10e-3), 1, 1e-13);
+}
+
 TEST(PumpedJet, stops_when_fluid_piles_up) {
   Scene scene = straight_pumped(20 * mL_h, 20 * poise, 0.02 * cm);
   scene.config.field->strength = -1e4; // back to the nozzle

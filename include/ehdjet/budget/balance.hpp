@@ -55,7 +55,7 @@ public:
   /// What an event has brought in. O(n) if it has left nearly all beads where they were.
   [[nodiscard]] Flow jump(const JetState& before, const JetState& after);
   /// Sums over the beads, and the energy stored by the terms with the columns `elastic_energy` and,
-  /// if asked for, `coulomb_energy`.
+  /// if asked for, `coulomb_energy`, with those of the near field.
   [[nodiscard]] JetTotals totals(const JetState& jet, bool with_coulomb_energy);
 
 private:

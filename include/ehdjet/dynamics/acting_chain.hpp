@@ -64,8 +64,7 @@ private:
   Constraints constraints_;
   Stage stage_;
   std::vector<double> mass_, charge_, volume_, inverse_mass_; // as they act
-  std::vector<double>
-      link_charge_; // only beside a grounded collector: elsewhere it is charge_
+  std::vector<double> link_charge_;           // used only with a grounded collector
   std::vector<std::vector<double>> declared_; // further carried columns
   std::vector<std::uint8_t> moves_;
   std::vector<LandedBead> landed_;

@@ -25,7 +25,7 @@ namespace ehdjet {
 /// prescribed at each stage time, held ends, and landed beads.
 ///
 /// Its stiff part are the terms' answers to a change of a link or of a velocity, with dr/dt = v
-/// (model 6). Charges have no part in it.
+/// (model 6). Pairs of charges have no part in it.
 class JetDynamics final : public OdeSystem, private StiffPart {
 public:
   void add(std::unique_ptr<ForceTerm> term) {

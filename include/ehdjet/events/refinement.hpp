@@ -50,9 +50,9 @@ private:
 class LinkCuts final : public Event {
 public:
   /// `interval`: only at the first step end at or behind each multiple of it [s]. Without `totals`
-  /// nothing is recorded.
+  /// nothing is recorded. `at_step_ends`: no event is located inside steps.
   LinkCuts(const RefinementRule& rule, std::optional<double> interval,
-           Refinement::Totals totals = {});
+           Refinement::Totals totals = {}, bool at_step_ends = false);
   [[nodiscard]] std::string_view name() const override { return "refinement"; }
   [[nodiscard]] bool due(const JetState& jet) const override;
   /// Never inside a step.
@@ -71,6 +71,7 @@ private:
   RefinementRule rule_;
   std::optional<Schedule> schedule_;
   Refinement::Totals totals_;
+  bool at_step_ends_;
 };
 
 } // namespace ehdjet

@@ -30,8 +30,8 @@ struct TermReport {
 
 /// How a term enters a budget of energy and momentum (model 8).
 struct TermAccount {
-  std::string energy,
-      energy_meaning; ///< column of its stored energy; no name: it stores none
+  std::string energy = {},
+              energy_meaning = {}; ///< its stored energy; no name: it stores none
   /// Where the rest goes. Without stored energy that is the work of the force. Momentum columns
   /// mean that the momentum comes from outside; without them the forces between the beads sum to
   /// zero.

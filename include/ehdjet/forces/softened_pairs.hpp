@@ -9,7 +9,7 @@
 
 namespace ehdjet {
 
-/// What charges closer to each other than their radii push less than points: the difference of the
+/// By how much charges that are closer than their radii repel each other less than points: the difference of the
 /// softened pair and the pair that the Coulomb solver sums (model 3.1),
 ///
 ///     U = k_C sum q_i q_j D(r_ij),   D(r) = (g(x) - g(C) - (x - C) g'(C))/eps,   x = r/eps < C,

@@ -19,11 +19,11 @@ struct Flow {
 /// A way through which energy and momentum enter a jet or leave it, and the columns that it has in a
 /// budget (model 8). Channels of one name are one channel. A column without a name is not written.
 struct Channel {
-  std::string name;
-  std::string energy, energy_meaning;     ///< a column of that name [J]
-  std::string momentum, momentum_meaning; ///< columns of that name with _x, _y, _z [kg m/s]
-  bool loss = false;                      ///< the energy column counts what leaves
-  bool axial = false;                     ///< the momentum has an x component only
+  std::string name = {};
+  std::string energy = {}, energy_meaning = {};     ///< a column of that name [J]
+  std::string momentum = {}, momentum_meaning = {}; ///< columns <name>_x, _y, _z [kg m/s]
+  bool loss = false;  ///< the energy column counts what leaves
+  bool axial = false; ///< the momentum has an x component only
 
   /// Columns <name>_energy and <name>_momentum.
   static Channel named(const std::string& name) {

@@ -75,8 +75,8 @@ void archive(const Archive& a, JetState& jet);
 /// A jet of that many beads whose columns are all zero.
 [[nodiscard]] JetState blank_jet(std::shared_ptr<const BeadTable> table, std::size_t beads);
 
-/// The same with the time and the state at the nozzle and the collector of another jet, but for its landed
-/// beads: a start for that jet on another mesh.
+/// A blank jet with the time, the state of embryo and feed, and the absorbing plane of another jet, without
+/// its landed beads: a start for putting that jet on another mesh.
 [[nodiscard]] JetState blank_like(const JetState& jet, std::size_t beads);
 
 /// Inserts a bead so that it gets index `at`; later beads (and their landing records) move up.

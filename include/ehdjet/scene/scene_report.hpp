@@ -8,7 +8,7 @@
 namespace ehdjet {
 
 /// What a scene means before it is run: every key with its unit, the dimensionless groups, the
-/// stability limits of explicit steps, what the scene is beyond as physics, what will be simulated,
+/// stability limits of explicit steps, which physical limits the jet exceeds, what will be simulated,
 /// and what it costs. Only the cost is an estimate; all else follows from the scene by the formulas of
 /// dimensionless.hpp, stability.hpp and physics_report.cpp.
 std::string scene_report(const Scene& scene);

@@ -228,7 +228,7 @@ void describe(V& v, CoulombConfig& c) {
       "whose radius is fixed");
   v.optional(
       "softened_pairs", c.softened_pairs, YesNo{},
-      "charges closer than their radii push less than points; for links that are not "
+      "charges closer than their radii repel less than points; for links that are not "
       "long against their radius",
       "with a near field, if the first links are shorter than 4 nozzle.radius");
   v.optional("softening_range", c.softening_range, between("-", 5, 1000),
