@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "embryo_link.hpp"
 #include "link_tension.hpp"
 
 namespace ehdjet {
@@ -101,11 +102,7 @@ double NearField::feeding_power(const Stage& stage, const LinkContent& rate) {
   }
   if (!is_split(stage, 2)) return 0;
   const double q = stage.link_charge[2], volume = stage.volume[2], l = links.length[2];
-  const auto v = stage.columns.velocity();
-  const Vec3 stretching(v.x[2], v.y[2] - v.y[0],
-                        v.z[2] - v.z[0]); // the nozzle stays at x = 0
-  const double df_dt =
-      options_.embryo->charge_fraction_slope(l) * stretching.dot(links.vector(2)) / l;
+  const double df_dt = charge_fraction_rate(*options_.embryo, stage);
   if (df_dt == 0) return 0; // the rest of the link may have no length
   return df_dt
          * (push(q, volume, l - options_.embryo->link_length).energy

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "embryo_link.hpp"
 #include "link_tension.hpp"
 
 namespace ehdjet {
@@ -155,13 +156,10 @@ double SoftenedPairs::feeding_power(const Stage& stage, const LinkContent& rate)
   if (head == 1) {
     square_rate = square_[1] / stage.volume[1] * rate.volume;
   } else if (options_.embryo) {
-    const auto v = stage.columns.velocity();
-    const double l = stage.links().length[2], rest = l - options_.embryo->link_length;
-    const Vec3 stretching(v.x[2], v.y[2] - v.y[0], v.z[2] - v.z[0]);
-    const double slope = options_.embryo->charge_fraction_slope(l);
-    if (slope > 0)
-      square_rate = stage.volume[2] / std::numbers::pi * (1 / rest - 1 / l) * slope
-                    * stretching.dot(stage.links().vector(2)) / l;
+    const double l = stage.links().length[2], rest = l - options_.embryo->link_length,
+                 df_dt = charge_fraction_rate(*options_.embryo, stage);
+    if (df_dt != 0) // the rest of the link may have no length
+      square_rate = stage.volume[2] / std::numbers::pi * (1 / rest - 1 / l) * df_dt;
   }
   return constants::coulomb * (by_charge * rate.charge + by_square * square_rate);
 }

@@ -1,6 +1,7 @@
 #include "cross_checks.hpp"
 
 #include "ehdjet/integrators/make_integrator.hpp"
+#include "ehdjet/scene/dimensionless.hpp"
 #include "ehdjet/scene/schema.hpp"
 #include "ehdjet/scene/stability.hpp"
 
@@ -67,9 +68,7 @@ void check_inflow(const SceneConfig& c, const SceneText& text) {
   if (!c.coulomb)
     exclude(refuse, "nozzle_charge_length", n.nozzle_charge_length,
             "no [coulomb]: charges do not act on each other");
-  const bool has_stress = c.viscoelasticity && c.viscoelasticity->elastic_modulus > 0
-                          && c.viscoelasticity->viscosity > 0;
-  if (!has_stress)
+  if (!carries_stress(c))
     exclude(
         refuse, "nozzle_stress", n.nozzle_stress,
         "no [viscoelasticity], or one without modulus or viscosity: there is no stress");

@@ -15,6 +15,11 @@ double field_strength(const SceneConfig& config) {
   return *config.field->potential / config.collector->distance;
 }
 
+bool carries_stress(const SceneConfig& c) {
+  return c.viscoelasticity && c.viscoelasticity->elastic_modulus > 0
+         && c.viscoelasticity->viscosity > 0;
+}
+
 std::optional<DimensionlessGroups> dimensionless_groups(const SceneConfig& config) {
   if (!config.nozzle || !config.viscoelasticity) return std::nullopt;
   const NozzleConfig& n = *config.nozzle;

@@ -96,10 +96,8 @@ std::string forces_text(const Scene& scene) {
                                  name_of(c.coulomb->near_field, near_field_forms),
                                  softens_pairs(c) ? ", softened pairs" : ""));
   if (c.viscoelasticity)
-    forces.emplace_back(c.viscoelasticity->elastic_modulus > 0
-                                && c.viscoelasticity->viscosity > 0
-                            ? "viscoelasticity (Maxwell)"
-                            : "viscoelasticity (inviscid: the stress is 0)");
+    forces.emplace_back(carries_stress(c) ? "viscoelasticity (Maxwell)"
+                                          : "viscoelasticity (inviscid: the stress is 0)");
   if (c.surface_tension)
     forces.push_back(fmt::format("surface tension ({} form)",
                                  name_of(c.surface_tension->form, surface_tension_forms)));

@@ -89,12 +89,6 @@ std::unique_ptr<Event> build_refinement(const SceneConfig& c, const JetDynamics&
                                       c.integrator.events == EventPlacement::step_end);
 }
 
-// Without elasticity, or without viscosity to hold it, stress is exactly zero at all times.
-bool carries_stress(const SceneConfig& c) {
-  return c.viscoelasticity && c.viscoelasticity->elastic_modulus > 0
-         && c.viscoelasticity->viscosity > 0;
-}
-
 /// l_step, or the shortest link of a given chain [m].
 double shortest_link_at_start(const Scene& scene) {
   if (scene.config.nozzle) return scene.config.nozzle->link_length;

@@ -244,6 +244,18 @@ TEST(NearField, changes_continuously_when_an_embryo_comes_and_goes) {
   }
 }
 
+/// x of the force on these beads, the only ones asked for.
+std::vector<double> x_forces(ForceTerm& term, Chain& chain, BeadRange targets) {
+  Stage& stage = chain.stage();
+  stage.targets = targets;
+  stage.invalidate();
+  const std::size_t n = chain.beads;
+  std::vector<double> f(3 * n);
+  const std::span<double> all(f);
+  term.add_force(stage, {all.subspan(0, n), all.subspan(n, n), all.subspan(2 * n, n)});
+  return f;
+}
+
 TEST(SoftenedPairs, are_absent_where_links_are_long) {
   Chain chain = random_chain(100, 2);
   SoftenedPairs pairs({});
@@ -258,13 +270,7 @@ TEST(SoftenedPairs, of_a_part_behind_an_embryo_are_those_of_the_whole) {
   for (double& volume : chain.volume) volume *= 20;
   SoftenedPairs pairs({.embryo = embryo});
   const auto whole = chain.force(pairs);
-  Stage& stage = chain.stage();
-  stage.targets = {2, 5};
-  stage.invalidate();
-  const std::size_t n = chain.beads;
-  std::vector<double> f(3 * n);
-  const std::span<double> all(f);
-  pairs.add_force(stage, {all.subspan(0, n), all.subspan(n, n), all.subspan(2 * n, n)});
+  const auto f = x_forces(pairs, chain, {2, 5});
   for (std::size_t k = 2; k < 5; ++k)
     EXPECT_NEAR(f[k], whole[k].x(), 1e-12 * whole[k].norm()) << k;
 }
@@ -274,13 +280,7 @@ TEST(SoftenedPairs, of_a_part_of_a_chain_are_those_of_the_whole) {
   Chain chain = random_chain(3, 8, 12);
   SoftenedPairs pairs({});
   const auto whole = chain.force(pairs);
-  Stage& stage = chain.stage();
-  stage.targets = {4, 8};
-  stage.invalidate();
-  const std::size_t n = chain.beads;
-  std::vector<double> f(3 * n);
-  const std::span<double> all(f);
-  pairs.add_force(stage, {all.subspan(0, n), all.subspan(n, n), all.subspan(2 * n, n)});
+  const auto f = x_forces(pairs, chain, {4, 8});
   for (std::size_t k = 4; k < 8; ++k)
     EXPECT_NEAR(f[k], whole[k].x(), 1e-12 * whole[k].norm()) << k;
 }

@@ -14,8 +14,8 @@ namespace ehdjet {
 /// its last stress. An interior bead that lands first freezes and waits (model 5).
 ///
 /// The link to a resting bead may become so short that it is no thread any more, on a straight jet,
-/// whose beads all land in one place: once it is shorter than its radius, l^3 <= V/pi, its upper
-/// bead has landed, too.
+/// whose beads all land in one place: once it is shorter than its radius, l^3 <= V/pi, and than a tenth
+/// of its length when the lower bead landed, its upper bead has landed, too.
 ///
 /// A landing ends the step, unless beads land every few steps. Then they pass the collector during
 /// a step, in which they count as resting where they crossed (JetState::absorbing_plane); time and

@@ -26,6 +26,7 @@ enum class NearFieldKind {
 /// While bead 1 is an embryo with the share f of its charge, link 2 is the mean of a link of length d and
 /// one of length d - l_step, with the weights 1 - f and f.
 ///
+/// source : derived in docs/near_field.md
 /// laws   : free surface: F = -grad U; second order in l; with softened pairs also where l < a; O(n)
 class NearField final : public ForceTerm {
 public:

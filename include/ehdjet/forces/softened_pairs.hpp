@@ -19,6 +19,7 @@ namespace ehdjet {
 /// Bead 0 has the radius of the first link. Radii follow the links, a_k^2 = V_k/(pi l_k), unless the
 /// near field is `fixed`.
 ///
+/// source : docs/near_field.md
 /// laws   : free surface: F = -grad U; nothing acts between beads farther apart than C eps
 /// cost   : O(n) comparisons; pairs only where links are shorter than C eps
 class SoftenedPairs final : public ForceTerm {

@@ -44,4 +44,8 @@ std::optional<DimensionlessGroups> dimensionless_groups(const SceneConfig& confi
 /// The strength of the external field along +x, however it is given; 0 without [field] [V/m].
 double field_strength(const SceneConfig& config);
 
+/// Whether links have a stress: without elasticity, or without viscosity to hold it, it is zero at all
+/// times.
+bool carries_stress(const SceneConfig& config);
+
 } // namespace ehdjet
