@@ -7,6 +7,7 @@
 #include <iterator>
 #include <numbers>
 #include <string>
+#include <string_view>
 #include <utility>
 
 namespace ehdjet {
@@ -45,6 +46,11 @@ void archive_columns(const Archive& a, JetState& jet) {
   jet.y = std::move(y);
 }
 
+bool has_name(const Archive& a, std::string_view name) {
+  const auto names = a.names();
+  return std::ranges::find(names, name) != names.end();
+}
+
 auto at_offset(std::vector<double>& v, std::size_t i) {
   return v.begin() + static_cast<std::ptrdiff_t>(i);
 }
@@ -58,8 +64,11 @@ bool JetState::is_landed(std::size_t bead) const {
 
 void archive(const Archive& a, JetState& jet) {
   a("time", jet.time), archive_columns(a.part("columns"), jet);
-  a("has_embryo", jet.has_embryo), a("fed_since", jet.fed_since);
-  a("absorbing_plane", jet.absorbing_plane);
+  a("has_embryo", jet.has_embryo), a("absorbing_plane", jet.absorbing_plane);
+  // Only a jet that is fed has it.
+  if (a.is_reading()) jet.fed_since = 0;
+  if (a.is_reading() ? has_name(a, "fed_since") : jet.fed_since != 0)
+    a("fed_since", jet.fed_since);
   std::vector<double> bead, time, radius;
   for (const LandedBead& l : jet.landed) {
     bead.push_back(static_cast<double>(l.bead));
