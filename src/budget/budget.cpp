@@ -48,9 +48,15 @@ void Budget::begin_step(const DenseStep& step,
   if (!start_) start_ = balance_.energies(step.jet);
   step_ = &step, events_ = events, theta_ = 0;
   inner_.clear(), next_inner_ = 0;
-  for (const auto& e : events) e->list_inner_times(inner_);
-  std::ranges::sort(inner_);
-  inner_.erase(std::unique(inner_.begin(), inner_.end()), inner_.end());
+  step.list_inner_times(inner_);
+  for (const auto& e : events) {
+    std::vector<double> times;
+    e->list_inner_times(times);
+    std::ranges::sort(times);
+    times.erase(std::unique(times.begin(), times.end()), times.end());
+    for (const double t : times) inner_.push_back({.time = t, .event = e.get()});
+  }
+  std::ranges::stable_sort(inner_, {}, &DenseStep::InnerTime::time);
   seen_ = step.jet;
 }
 
@@ -60,10 +66,10 @@ void Budget::end_step(double t, double theta) {
 }
 
 void Budget::advance(double t, double theta) {
-  for (; next_inner_ < inner_.size() && inner_[next_inner_] <= t; ++next_inner_) {
-    const double landing = inner_[next_inner_];
-    integrate(std::min((landing - step_->t0) / step_->h, theta));
-    pass(landing);
+  for (; next_inner_ < inner_.size() && inner_[next_inner_].time <= t; ++next_inner_) {
+    const DenseStep::InnerTime& inner = inner_[next_inner_];
+    integrate(std::min((inner.time - step_->t0) / step_->h, theta));
+    if (inner.event != nullptr) pass(inner);
   }
   integrate(theta);
 }
@@ -76,12 +82,14 @@ void Budget::integrate(double theta) {
     look_into_step(at, step_->time(at), step_->time(at));
     // The link of a bead that has landed within the step pulls with the stress that the step
     // gives it, not with the one that is on record for it.
-    if (!inner_.empty())
+    if (!inner_.empty()) {
+      const std::size_t births = step_->births(step_->time(at));
       for (const LandedBead& b : seen_.landed)
-        if (!step_->jet.is_landed(b.bead))
+        if (!step_->jet.is_landed(b.bead - births))
           for (std::size_t c = JetColumns<double>::kinematic_columns;
                c < seen_.columns().count(); ++c)
-            seen_.columns().column(c)[b.bead] = step_->value(at, c, b.bead);
+            seen_.columns().column(c)[b.bead] = step_->value(at, c, b.bead - births);
+    }
     const std::span<const Flow> flows = balance_.flows(seen_);
     for (std::size_t c = 0; c < flows.size(); ++c)
       sums_[c].add(flows[c], node.weight * width * step_->h);
@@ -89,20 +97,21 @@ void Budget::integrate(double theta) {
   theta_ = theta;
 }
 
-/// A bead lands and the step goes on: the jet right before and right after, as the events see it.
-void Budget::pass(double landing_time) {
+/// Something happens and the step goes on: the jet right before and right after, as the events see it.
+void Budget::pass(const DenseStep::InnerTime& inner) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
-  look_into_step(theta_, landing_time, std::nextafter(landing_time, -infinity));
+  look_into_step(theta_, inner.time, std::nextafter(inner.time, -infinity));
   before_ = seen_;
-  look_into_step(theta_, landing_time, landing_time);
-  sums_[balance_.channel("landing")].add(balance_.jump(before_, seen_), 1);
+  look_into_step(theta_, inner.time, inner.time);
+  sums_[balance_.channel(inner.event->channel().name)].add(balance_.jump(before_, seen_),
+                                                           1);
 }
 
 /// The jet at time t with what has happened to it up to `past`.
 void Budget::look_into_step(double theta, double t, double past) {
   if (!inner_.empty()) seen_ = step_->jet; // the last look may have removed beads
+  step_->chain_at(theta, past, seen_);
   seen_.time = t;
-  step_->state(theta, seen_.y);
   balance_.prescribe(seen_);
   if (inner_.empty()) return;
   for (const auto& e : events_) e->anticipate(past, seen_);

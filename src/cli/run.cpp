@@ -75,8 +75,15 @@ std::string summary(const RunResult& result, const Scene& scene,
   if (!result.coulomb_method.empty())
     text += fmt::format("  Coulomb       {}\n", result.coulomb_method);
   if (cost.method)
-    text += fmt::format("  integrator    auto: {} since t = {:.4g} s, {} changes\n",
-                        cost.method->in_use, cost.method->since, cost.method->changes);
+    text += fmt::format("  integrator    {}: {} since t = {:.4g} s, {} changes\n",
+                        scene.config.integrator.method, cost.method->in_use,
+                        cost.method->since, cost.method->changes);
+  if (cost.two_rates && cost.two_rates->steps > 0)
+    text += fmt::format(
+        "  two rates     {} macro steps with {} evaluations of the {} beads at the "
+        "nozzle; {:.4g} Coulomb sums in all\n",
+        cost.two_rates->steps, cost.two_rates->inner_evaluations,
+        cost.two_rates->inner_beads, cost.two_rates->full_sums);
   text += fmt::format("  cost          {} evaluations, {} steps, {} rejected, {:.2f} s\n",
                       cost.evaluations, cost.steps, cost.rejected, cost.wall_time);
   if (cost.coincident_pairs > 0)

@@ -22,6 +22,10 @@ void ActingChain::bind(const JetState& jet, std::optional<double> absorbing_plan
   if (inflow != nullptr || constraints_.ends.first) held_.push_back(0);
   if (has_led_bead_) held_.push_back(1);
   for (const LandedBead& b : landed_) held_.push_back(b.bead);
+  const std::size_t n = mass_.size();
+  const LedParts& led = constraints_.led;
+  for (std::size_t k = has_led_bead_ ? 2 : 1; k < led.head; ++k) held_.push_back(k);
+  for (std::size_t k = n - led.tail; k < n; ++k) held_.push_back(k);
   frozen_ = held_;
   if (constraints_.ends.last)
     held_.push_back(jet.links()); // its link goes on like any other
@@ -37,6 +41,17 @@ void ActingChain::bind(const JetState& jet, std::optional<double> absorbing_plan
   stage_.feed = feed_ ? &*feed_ : nullptr;
   stage_.declared = declared_;
   stage_.first = jet.first(), stage_.landed = landed_, stage_.moves = moves_;
+}
+
+// They are the end of the chain, as `Landing` makes sure of.
+const Stage& ActingChain::at_absorbed() {
+  const std::size_t begin = absorbed_.back();
+  for (std::size_t i = 0; i < absorbed_.size(); ++i)
+    charge_[absorbed_[i]] = charge_before_[i];
+  stage_.targets.begin = std::max(stage_.targets.begin, begin);
+  stage_.sources.end = std::min(stage_.sources.end, begin);
+  stage_.invalidate();
+  return stage_;
 }
 
 const Stage& ActingChain::at(double t, std::span<const double> y, BeadRange targets,
@@ -100,8 +115,9 @@ Support ActingChain::support(std::size_t bead) const {
   if (moves_[bead] != 0) return Support::none;
   for (const LandedBead& b : landed_)
     if (b.bead == bead) return Support::collector;
+  if (bead >= mass_.size() - constraints_.led.tail) return Support::clamp;
   if (constraints_.inflow == nullptr) return Support::clamp;
-  return bead == 0 ? Support::inflow : Support::insertion;
+  return bead == 0 ? Support::inflow : bead == 1 ? Support::insertion : Support::clamp;
 }
 
 } // namespace ehdjet

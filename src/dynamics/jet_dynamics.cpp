@@ -29,9 +29,20 @@ void JetDynamics::ground_collector() {
   chain_.constrain(c);
 }
 
+void JetDynamics::lead(const LedParts& led) {
+  Constraints c = constraints();
+  c.led = led;
+  chain_.constrain(c);
+}
+
 void JetDynamics::bind(const JetState& jet) {
   if (jet.table != table_) bind_columns(jet.table);
   chain_.bind(jet, jet.absorbing_plane);
+  const LedParts& led = constraints().led;
+  if (led.head > 0 || led.tail > 0) {
+    EHDJET_EXPECTS(led.head + led.tail <= jet.beads());
+    targets_ = {led.head, jet.beads() - led.tail}, sources_ = {led.head, jet.beads()};
+  }
   resting_.clear();
   for (std::size_t c = 0; c < table_->integrated().size(); ++c) {
     const bool of_links = table_->integrated()[c].owner == Owner::link;
@@ -59,12 +70,28 @@ void JetDynamics::bind_columns(std::shared_ptr<const BeadTable> table) {
 
 void JetDynamics::prescribe(double t, std::span<double> y) const {
   if (inflow_) inflow_->prescribe(t, chain_.has_led_bead(), {y, chain_.beads()});
+  if (const Guide* guide = constraints().led.guide)
+    guide->prescribe(t, {y, chain_.beads()});
+}
+
+std::size_t JetDynamics::judged_rows(std::span<const double> end) const {
+  constexpr std::size_t kinked = 4; // beads above one that passes
+  const std::size_t n = chain_.beads();
+  std::size_t judged = n;
+  if (!constraints().led.passed_fly_on || !chain_.absorbing_plane()) return judged;
+  for (std::size_t k = n; k-- > 0;) {
+    if (end[k] > *chain_.absorbing_plane())
+      judged = k < kinked ? 0 : k - kinked;
+    else if (chain_.support(k) != Support::collector)
+      break;
+  }
+  return judged;
 }
 
 void JetDynamics::evaluate(double t, std::span<const double> y, std::span<double> rate,
                            BeadRange targets, BeadRange sources) {
   EHDJET_EXPECTS(y.size() == rate.size() && chain_.beads() > 0);
-  ++evaluations_;
+  if (targets == targets_) ++evaluations_; // of all beads that it is about
   const Stage& stage = chain_.at(t, y, targets, sources);
   const std::size_t begin = stage.targets.begin, end = stage.targets.end;
   const std::size_t n = chain_.beads();
@@ -74,6 +101,9 @@ void JetDynamics::evaluate(double t, std::span<const double> y, std::span<double
     std::fill(f + begin, f + end, 0.0);
   for (const auto& term : terms_) term->add_force(stage, force);
   for (ForceTerm* term : with_columns_) term->set_column_rates(stage, rates);
+  const bool any_absorbed = !chain_.absorbed().empty();
+  if (any_absorbed && constraints().led.passed_fly_on && chain_.absorbed().back() < end)
+    let_fly_on(force);
 
   for (std::size_t c = 0; c < 3; ++c) { // dr/dt = v
     const double* velocity = y.data() + (c + 3) * n;
@@ -87,13 +117,20 @@ void JetDynamics::evaluate(double t, std::span<const double> y, std::span<double
   // How beads that have passed fly on does not matter any more: they do so like the one before
   // them, because a jump of their own acceleration would only shorten the step.
   const auto absorbed = chain_.absorbed();
-  if (!absorbed.empty() && absorbed.back() > stage.first)
+  if (any_absorbed && !constraints().led.passed_fly_on && absorbed.back() > stage.first)
     for (const std::size_t k : absorbed) force.set(k, force[absorbed.back() - 1]);
   for (const std::size_t i : resting_) rate[i] = 0;
 }
 
+void JetDynamics::let_fly_on(Vec3View force) {
+  const Stage& stage = chain_.at_absorbed();
+  for (std::size_t k = stage.targets.begin; k < stage.targets.end; ++k)
+    force.set(k, Vec3::Zero());
+  for (const auto& term : terms_) term->add_force(stage, force);
+}
+
 void JetDynamics::linearize(double t, std::span<const double> y) {
-  const Stage& stage = chain_.at(t, y);
+  const Stage& stage = chain_.at(t, y, targets_, sources_);
   linearized_at_ = t;
   jacobian_.reset(chain_.beads(), stage.first);
   for (const auto& term : terms_) term->add_derivatives(stage, jacobian_.links());

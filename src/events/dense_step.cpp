@@ -4,7 +4,7 @@
 
 namespace ehdjet {
 
-void DenseStep::state(double theta, std::span<double> out) const {
+void IntegratorStep::state(double theta, std::span<double> out) const {
   if (theta == 0) {
     std::ranges::copy(jet.y, out.begin());
   } else if (theta == 1) {
@@ -15,7 +15,7 @@ void DenseStep::state(double theta, std::span<double> out) const {
   }
 }
 
-double DenseStep::component(double theta, std::size_t index) const {
+double IntegratorStep::component(double theta, std::size_t index) const {
   if (theta == 0) return jet.y[index];
   if (theta == 1) return integrator_.end_state()[index];
   integrator_.prepare_dense_output(system_);

@@ -101,7 +101,8 @@ double Insertion::excess(const DenseStep& step, double theta) const {
 }
 
 std::optional<double> Insertion::locate(const DenseStep& step) {
-  if (step.jet.has_embryo || step.jet.is_landed(1)) return std::nullopt;
+  if (!step.keeps_chain() || step.jet.has_embryo || step.jet.is_landed(1))
+    return std::nullopt;
   return first_crossing([&](double theta) { return excess(step, theta); });
 }
 
@@ -147,7 +148,7 @@ double Release::excess(const DenseStep& step, double theta) const {
 }
 
 std::optional<double> Release::locate(const DenseStep& step) {
-  if (!step.jet.has_embryo) return std::nullopt;
+  if (!step.keeps_chain() || !step.jet.has_embryo) return std::nullopt;
   return first_crossing([&](double theta) { return excess(step, theta); });
 }
 

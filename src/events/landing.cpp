@@ -75,7 +75,7 @@ std::optional<double> Landing::locate(const DenseStep& step) {
   if (found.empty() && !touch) return std::nullopt;
   std::ranges::sort(found);
   if (touch && (found.empty() || *touch <= found.front().first)) {
-    located_ = step.jet.links() - 1;
+    located_ = 1;
     return touch;
   }
 
@@ -84,7 +84,7 @@ std::optional<double> Landing::locate(const DenseStep& step) {
   bool in_order = true; // from the end of the chain on, as the right-hand side assumes
   for (std::size_t i = 0; i < found.size(); ++i) in_order &= found[i].second + i == last;
   if (!step.jet.absorbing_plane || !in_order) {
-    located_ = found.front().second;
+    located_ = step.jet.links() - found.front().second;
     return found.front().first;
   }
   for (const auto& [theta, k] : found) passing_.push_back(arrival_inside(step, k, theta));
@@ -122,9 +122,10 @@ std::optional<double> Landing::predict(const DenseStep& step) const {
 }
 
 void Landing::anticipate(double t, JetState& jet) const {
+  const std::size_t end = jet.links();
   for (const Arrival& a : passing_) {
     if (a.time > t) break;
-    put_on_collector(jet, a);
+    put_on_collector(jet, end - a.from_end, a);
     while (leading_may_go(jet)) remove_leading_bead(jet);
   }
 }
@@ -135,12 +136,14 @@ void Landing::list_inner_times(std::vector<double>& times) const {
 
 void Landing::apply(EventContext& context) {
   const auto arrived = arrivals(context.jet);
+  const std::size_t end = context.jet.links();
   located_.reset(), passing_.clear();
   for (const Arrival& a : arrived) {
-    put_on_collector(context.jet, a);
+    const std::size_t bead = end - a.from_end;
+    put_on_collector(context.jet, bead, a);
     context.ledger.impact_speed = Vec3(a.state[3], a.state[4], a.state[5]).norm();
     context.ledger.collector_radius =
-        std::ranges::find(context.jet.landed, a.bead, &LandedBead::bead)->radius;
+        std::ranges::find(context.jet.landed, bead, &LandedBead::bead)->radius;
     ++context.statistics.landings;
     while (leading_may_go(context.jet)) remove_leading(context, a.time);
   }
@@ -155,8 +158,9 @@ std::vector<Landing::Arrival> Landing::arrivals(const JetState& jet) const {
   for_each_arrival(
       jet, [&](std::size_t k) { return has_arrived(jet, k); },
       [&](std::size_t k) {
-        const auto passed = std::ranges::find(passing_, k, &Arrival::bead);
-        arrived.push_back(passed != passing_.end() ? *passed : arrival_now(jet, k));
+        const std::size_t from_end = jet.links() - k;
+        const auto passed = std::ranges::find(passing_, from_end, &Arrival::from_end);
+        arrived.push_back(passed != passing_.end() ? *passed : arrival_now(jet, from_end));
       });
   std::ranges::reverse(arrived);
   return arrived;
@@ -171,29 +175,30 @@ Landing::Arrival Landing::arrival_inside(const DenseStep& step, std::size_t bead
   const double length = bead > first_bead_
                             ? (position - step.position(theta, bead - 1)).norm()
                             : link_length(step.jet, bead);
-  return {.bead = bead,
+  return {.from_end = step.jet.links() - bead,
           .time = step.time(theta),
           .state = std::move(state),
           .link_length = length};
 }
 
-Landing::Arrival Landing::arrival_now(const JetState& jet, std::size_t bead) const {
+Landing::Arrival Landing::arrival_now(const JetState& jet, std::size_t from_end) const {
+  const std::size_t bead = jet.links() - from_end;
   std::vector<double> state{distance_};
   for (std::size_t c = 1; c < jet.table->integrated().size(); ++c)
     state.push_back(jet.columns().column(c)[bead]);
-  return {.bead = bead, .time = jet.time, .state = std::move(state), .link_length = {}};
+  return {
+      .from_end = from_end, .time = jet.time, .state = std::move(state), .link_length = {}};
 }
 
-void Landing::put_on_collector(JetState& jet, const Arrival& arrival) {
+void Landing::put_on_collector(JetState& jet, std::size_t bead, const Arrival& arrival) {
   for (std::size_t c = 0; c < arrival.state.size(); ++c)
-    jet.columns().column(c)[arrival.bead] = arrival.state[c];
-  const std::size_t link = arrival.bead > 0 ? arrival.bead : jet.first(); // 0 owns none
+    jet.columns().column(c)[bead] = arrival.state[c];
+  const std::size_t link = bead > 0 ? bead : jet.first(); // 0 owns none
   const double length = arrival.link_length.value_or(link_length(jet, link));
-  const LandedBead landed{.bead = arrival.bead,
-                          .time = arrival.time,
-                          .radius = link_radius(jet.volume[link], length)};
-  jet.landed.insert(
-      std::ranges::upper_bound(jet.landed, arrival.bead, {}, &LandedBead::bead), landed);
+  const LandedBead landed{
+      .bead = bead, .time = arrival.time, .radius = link_radius(jet.volume[link], length)};
+  jet.landed.insert(std::ranges::upper_bound(jet.landed, bead, {}, &LandedBead::bead),
+                    landed);
 }
 
 void Landing::remove_leading(EventContext& context, double time) {

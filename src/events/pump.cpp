@@ -88,6 +88,7 @@ bool FeedCut::due(const JetState& jet) const {
 }
 
 std::optional<double> FeedCut::locate(const DenseStep& step) {
+  if (!step.keeps_chain()) return std::nullopt;
   located_ = inflow_.next_cut(step.jet.fed_since);
   if (located_ > step.time(1)) return std::nullopt;
   return std::min((located_ - step.t0) / step.h, 1.0);

@@ -71,6 +71,7 @@ bool Refinement::due(const JetState& jet) const {
 
 std::optional<double> Refinement::locate(const DenseStep& step) {
   pass(step.t0); // multiples at which there was nothing to do
+  if (!step.keeps_chain()) return std::nullopt;
   const double end = step.time(1);
   for (Schedule next = schedule_; next.next() <= end; next.advance()) {
     const double theta = std::min((next.next() - step.t0) / step.h, 1.0);
@@ -81,6 +82,12 @@ std::optional<double> Refinement::locate(const DenseStep& step) {
     return theta;
   }
   return std::nullopt;
+}
+
+double Refinement::next_time(double t) const {
+  Schedule after = schedule_;
+  while (after.next() <= t * (1 + round_off)) after.advance();
+  return after.next();
 }
 
 void Refinement::pass(double t) {
@@ -114,6 +121,13 @@ bool LinkCuts::due(const JetState& jet) const {
 std::optional<double> LinkCuts::locate(const DenseStep& step) {
   pass(step.t0); // multiples at which there was nothing to do
   return std::nullopt;
+}
+
+double LinkCuts::next_time(double t) const {
+  if (!schedule_) return Event::next_time(t);
+  Schedule after = *schedule_;
+  while (after.next() <= t * (1 + round_off)) after.advance();
+  return after.next();
 }
 
 void LinkCuts::pass(double t) {

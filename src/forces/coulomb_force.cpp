@@ -15,7 +15,6 @@ void CoulombForce::add_force(const Stage& stage, Vec3View force) {
     coincident_pairs_ += solver_->coincident_pairs();
     return;
   }
-  // A bead and itself is a pair at zero distance here: such pairs are not counted.
   const auto part = [](auto columns, BeadRange beads) {
     const auto of = [&](auto v) { return v.subspan(beads.begin, beads.end - beads.begin); };
     return decltype(columns){of(columns.x), of(columns.y), of(columns.z)};
@@ -25,6 +24,12 @@ void CoulombForce::add_force(const Stage& stage, Vec3View force) {
     return PointCharges{part(all.r, b), all.q.subspan(b.begin, size),
                         all.moves.empty() ? all.moves : all.moves.subspan(b.begin, size)};
   };
+  if (stage.targets.within(n) == stage.sources.within(n)) {
+    solver_->add_force(charges(stage.sources), part(force, stage.sources));
+    coincident_pairs_ += solver_->coincident_pairs();
+    return;
+  }
+  // A bead and itself is a pair at zero distance here: such pairs are not counted.
   solver_->add_force_from(charges(stage.sources), charges(stage.targets),
                           part(force, stage.targets));
 }

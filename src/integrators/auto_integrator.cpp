@@ -114,6 +114,10 @@ void AutoIntegrator::restart() {
   new_step_ = true;
 }
 
+void AutoIntegrator::start_from_rate(std::span<const double> rate) {
+  active_->start_from_rate(rate);
+}
+
 void AutoIntegrator::archive(const Archive& a) {
   bool is_implicit = active_ == &implicit_;
   a("is_implicit", is_implicit);

@@ -15,6 +15,9 @@ namespace {
 std::vector<IntegratorDescription> list_methods() {
   std::vector<IntegratorDescription> methods{
       {"auto", "dormand-prince, or ros34pw2 while stability would limit its steps",
+       MethodKind::chooses, true},
+      {"two-rate",
+       "macro steps and, for the beads near the nozzle, micro steps; both as \"auto\"",
        MethodKind::chooses, true}};
   for (const RosenbrockTableau& t : rosenbrock_tableaus())
     methods.push_back(

@@ -100,11 +100,13 @@ StepOutcome RosenbrockW::attempt(OdeSystem& system, double t, double h,
   combine(y.data(), end, y1_.data(), n);
   std::ranges::fill(error_, 0.0);
   combine(error_.data(), difference, error_.data(), n);
-  return {scale_.norm(error_, y0_, y1_)};
+  system.prescribe(t + h, y1_);
+  judged_ = system.judged_rows(y1_);
+  return {scale_.norm(error_, y0_, y1_, judged_)};
 }
 
 std::size_t RosenbrockW::worst_component() const {
-  return scale_.worst(error_, y0_, y1_);
+  return scale_.worst(error_, y0_, y1_, judged_);
 }
 
 void RosenbrockW::dense_output(double theta, std::size_t first,

@@ -60,6 +60,7 @@ StepOutcome RungeKutta::attempt(OdeSystem& system, double t, double h,
   combine(y0_.data(), sum, y1_.data(), y1_.size());
   if (method_->error_order == 0) return {.error = is_finite(y1_) ? 0.0 : std::nan("")};
   if (error_needs_end_) evaluate_end(system);
+  judged_ = system.judged_rows(y1_);
   return {estimated_error()};
 }
 
@@ -72,14 +73,14 @@ double RungeKutta::estimated_error() {
       sum.add(k_[j].data(), h_ * method_->error[e][j]);
     std::ranges::fill(error_, 0.0);
     combine(error_.data(), sum, error_.data(), error_.size());
-    norms[e] = scale_.norm(error_, y0_, y1_);
+    norms[e] = scale_.norm(error_, y0_, y1_, judged_);
   }
   if (method_->error.size() == 1 || norms[0] == 0) return norms[0];
   return norms[0] / std::hypot(1.0, 0.1 * norms[1] / norms[0]); // no square underflows
 }
 
 std::size_t RungeKutta::worst_component() const {
-  return error_.empty() ? 0 : scale_.worst(error_, y0_, y1_);
+  return error_.empty() ? 0 : scale_.worst(error_, y0_, y1_, judged_);
 }
 
 void RungeKutta::prepare_dense_output(OdeSystem& system) {
@@ -117,6 +118,17 @@ void RungeKutta::dense_output(double theta, std::size_t first,
   for (std::size_t i = 0; i < out.size(); ++i)
     out[i] = y0_[first + i] + difference * (y1_[first + i] - y0_[first + i]);
   combine(out.data(), sum, out.data(), out.size());
+}
+
+std::span<const double> RungeKutta::end_rate() const {
+  if (!end_known_) return {};
+  return k_[method_->stages.size()];
+}
+
+void RungeKutta::start_from_rate(std::span<const double> rate) {
+  resize(rate.size());
+  std::ranges::copy(rate, k_.front().begin());
+  first_known_ = true;
 }
 
 void RungeKutta::commit(std::vector<double>& y) {

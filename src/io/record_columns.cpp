@@ -121,7 +121,19 @@ std::vector<RecordColumn<JetSnapshot>> observable_columns() {
       {{"rejected", "1", "rejected steps, so far", count},
        from_statistics(&RunStatistics::rejected)},
       {{"coulomb_error", "1", "relative L2 error of the Coulomb force at its last check"},
-       [](const auto& s) { return s.statistics.coulomb_error.value_or(0); }}};
+       [](const auto& s) { return s.statistics.coulomb_error.value_or(0); }},
+      {{"inner_evaluations", "1", "of the beads near the nozzle, with two rates, so far",
+        count},
+       [](const auto& s) {
+         return static_cast<double>(
+             s.statistics.two_rates.value_or(TwoRateRecord{}).inner_evaluations);
+       }},
+      {{"full_sums", "1",
+        "Coulomb sums of steps with two rates, everything included, over all pairs of the "
+        "jet"},
+       [](const auto& s) {
+         return s.statistics.two_rates.value_or(TwoRateRecord{}).full_sums;
+       }}};
 }
 
 std::vector<RecordColumn<RefinementRecord>> refinement_columns() {

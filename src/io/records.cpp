@@ -201,10 +201,11 @@ private:
 } // namespace
 
 std::unique_ptr<Observer> record_observables(std::shared_ptr<RunFile> file, double interval,
-                                             bool with_coulomb_error,
-                                             const std::shared_ptr<Accounts>& further) {
-  auto columns = with(with_coulomb_error, "coulomb_error", observable_columns());
-  if (further) append(columns, further);
+                                             const FurtherObservables& further) {
+  auto columns = with(further.coulomb_error, "coulomb_error", observable_columns());
+  for (const char* name : {"inner_evaluations", "full_sums"})
+    columns = with(further.two_rates, name, std::move(columns));
+  if (further.accounts) append(columns, further.accounts);
   return std::make_unique<Record<JetSnapshot>>(std::move(file), "observables",
                                                std::move(columns), interval);
 }

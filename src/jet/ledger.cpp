@@ -15,6 +15,11 @@ void archive(const Archive& a, RunStatistics& s) {
   a("evaluations", s.evaluations), a("steps", s.steps), a("rejected", s.rejected);
   a("insertions", s.insertions), a("releases", s.releases), a("landings", s.landings);
   a("refinements", s.refinements);
+  if (s.two_rates) {
+    TwoRateRecord& r = *s.two_rates;
+    a("macro_steps", r.steps), a("inner_evaluations", r.inner_evaluations);
+    a("inner_beads", r.inner_beads), a("full_sums", r.full_sums);
+  }
   if (s.method) a("method_since", s.method->since), a("method_changes", s.method->changes);
   a("coulomb_error", s.coulomb_error), a("coulomb_violations", s.coulomb_violations);
   a("coincident_pairs", s.coincident_pairs);

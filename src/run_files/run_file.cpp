@@ -99,6 +99,12 @@ void write_statistics(hid_t file, const RunStatistics& s) {
   write("rejected", s.rejected), write("insertions", s.insertions);
   write("releases", s.releases), write("landings", s.landings);
   if (s.refinements) write("refinements", *s.refinements);
+  if (s.two_rates) {
+    write("macro_steps", s.two_rates->steps);
+    write("inner_beads", s.two_rates->inner_beads);
+    write("inner_evaluations", s.two_rates->inner_evaluations);
+    write("full_sums", s.two_rates->full_sums);
+  }
   if (s.method) {
     write("method", std::string(s.method->in_use));
     write("method_since", s.method->since), write("method_changes", s.method->changes);

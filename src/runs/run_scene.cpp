@@ -31,9 +31,12 @@ void add_records(Simulation& simulation, const std::shared_ptr<RunFile>& file,
   const OutputConfig& output = config.output;
   if (output.observables)
     simulation.add(record_observables(
-        file, *output.observables, config.coulomb && config.coulomb->check_every,
-        has_near_field(config) ? std::make_shared<EffectiveTension>(simulation.dynamics())
-                               : nullptr));
+        file, *output.observables,
+        {.coulomb_error = config.coulomb && config.coulomb->check_every,
+         .two_rates = simulation.statistics().two_rates.has_value(),
+         .accounts = has_near_field(config)
+                         ? std::make_shared<EffectiveTension>(simulation.dynamics())
+                         : nullptr}));
   if (output.frames)
     simulation.add(record_frames(file, *output.frames, *simulation.jet().table));
   if (output.deposit) simulation.add(record_deposit(file, simulation.jet().table));

@@ -228,6 +228,65 @@ std::unique_ptr<JetDynamics> compose_dynamics(const Scene& scene,
   return dynamics;
 }
 
+/// Whether a scene can be simulated with two rates, and its own method allows it.
+bool may_use_two_rates(const SceneConfig& c, const Extras& extras) {
+  const IntegratorConfig& i = c.integrator;
+  return (i.method == "auto" || i.method == "two-rate") && c.nozzle && c.coulomb && i.rtol
+         && i.events == EventPlacement::located && i.landings == LandingSteps::automatic
+         && extras.forces.empty();
+}
+
+/// The inner beads as a simulation of their own, and the equations of motion of the others: the terms of
+/// the whole jet, except that the inner beads have their own Coulomb force.
+std::unique_ptr<TwoRate> build_two_rate(const Scene& scene, const JetDynamics& whole,
+                                        const std::shared_ptr<const InflowRule>& inflow,
+                                        const std::shared_ptr<const BeadTable>& table,
+                                        StepLimits limits) {
+  const SceneConfig& c = scene.config;
+  const auto part = [&] {
+    auto dynamics = std::make_unique<JetDynamics>();
+    dynamics->set_inflow(inflow);
+    if (whole.constraints().grounded_collector) dynamics->ground_collector();
+    return dynamics;
+  };
+  TwoRate::Parts parts;
+  parts.inflow = inflow;
+  parts.field = std::make_shared<ExtrapolatedField>();
+  parts.projected = std::make_shared<ProjectedField>();
+  parts.predictor = std::make_shared<Predictor>();
+  parts.record = std::make_shared<InnerRecord>(inflow);
+  auto inner = part();
+  parts.downstream = part();
+  for (const auto& term : whole.terms()) {
+    parts.downstream->add(term);
+    if (dynamic_cast<const CoulombForce*>(term.get()) == nullptr) inner->add(term);
+  }
+  inner->add(std::make_unique<CoulombForce>(make_coulomb_solver({.solver = "direct"})));
+  inner->add(parts.field);
+  parts.downstream->add(parts.projected);
+
+  ErrorScale scale = error_scale(scene, *table);
+  limits.even_at_end = true;
+  parts.inner_dynamics = inner.get();
+  parts.inner =
+      std::make_unique<Simulation>(initial_jet(scene, table), std::move(inner),
+                                   make_integrator(c.integrator.method, scale), limits);
+  for (auto& event : inflow->events()) parts.inner->add(std::move(event));
+  scale.rtol = c.integrator.downstream_rtol.value_or(scale.rtol);
+  parts.integrator = make_integrator(c.integrator.method, scale);
+  parts.scale = scale;
+  parts.inward = make_coulomb_solver({.solver = "direct"});
+  parts.outward = make_coulomb_solver({.solver = "direct"});
+
+  constexpr std::size_t default_inner_beads = 24, worth_it = 200;
+  TwoRate::Options options{.inner_beads =
+                               c.integrator.inner_beads.value_or(default_inner_beads),
+                           .adapts = !c.integrator.inner_beads,
+                           .fewest_beads = c.integrator.method == "auto" ? worth_it : 0};
+  if (c.collector) options.collector = c.collector->distance;
+  return std::make_unique<TwoRate>(std::move(parts), options);
+}
+
 } // namespace
 
 std::unique_ptr<JetDynamics> build_dynamics(const Scene& scene) {
@@ -246,8 +305,12 @@ std::unique_ptr<Simulation> build_simulation(const Scene& scene, Extras extras) 
                     .longest = c.integrator.max_step.value_or(StepLimits{}.longest),
                     .shortest = c.integrator.min_step,
                     .shortest_link = shortest_link(scene)};
+  std::unique_ptr<TwoRate> two_rate;
+  if (may_use_two_rates(c, extras))
+    two_rate = build_two_rate(scene, *dynamics, inflow, table, limits);
   auto simulation = std::make_unique<Simulation>(
       initial_jet(scene, table), std::move(dynamics), std::move(integrator), limits);
+  if (two_rate) simulation->use_two_rates(std::move(two_rate));
   if (c.integrator.events == EventPlacement::step_end)
     simulation->snap_events_to_step_ends();
 

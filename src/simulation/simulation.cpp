@@ -12,6 +12,8 @@
 namespace ehdjet {
 namespace {
 
+constexpr std::string_view two_rates = "two-rate"; // as a method
+
 constexpr double never = std::numeric_limits<double>::infinity();
 
 // An expected event lies inside the step that aims at it, not just behind its end.
@@ -114,6 +116,22 @@ Simulation::Simulation(JetState jet, std::unique_ptr<JetDynamics> dynamics,
   dynamics_->prescribe(jet_.time, jet_.y);
 }
 
+void Simulation::use_two_rates(std::unique_ptr<TwoRate> two_rate) {
+  EHDJET_EXPECTS(!limits_.fixed && events_located_);
+  two_rate_ = std::move(two_rate);
+  statistics_.two_rates.emplace();
+  if (!statistics_.method)
+    statistics_.method = MethodRecord{.in_use = integrator_->name(), .since = jet_.time};
+}
+
+void Simulation::take_over(JetState jet, const Ledger& ledger) {
+  jet_ = std::move(jet), ledger_ = ledger;
+  time_ = CompensatedSum(jet_.time);
+  dynamics_->bind(jet_);
+  dynamics_->prescribe(jet_.time, jet_.y);
+  integrator_->restart();
+}
+
 void Simulation::add(std::unique_ptr<Event> event) {
   events_.push_back(std::move(event));
   restart_step_.push_back(0);
@@ -138,7 +156,14 @@ JetSnapshot Simulation::now() const {
 // Goes to the end of the step that has just been attempted, or to the first event in it, which is
 // applied.
 void Simulation::advance(double h, double end_time) {
-  const DenseStep step(jet_.time, h, jet_, *integrator_, *dynamics_);
+  if (two_rates_)
+    advance(*two_rate_->step(jet_), end_time);
+  else
+    advance(IntegratorStep(jet_.time, h, jet_, *integrator_, *dynamics_), end_time);
+}
+
+void Simulation::advance(const DenseStep& step, double end_time) {
+  const double h = step.h;
   const auto found = events_located_ ? first_event(step) : std::nullopt;
   const double theta = found ? found->theta : 1.0;
   CompensatedSum next_time = time_;
@@ -151,12 +176,13 @@ void Simulation::advance(double h, double end_time) {
   for (Observer* o : step_observers_) o->begin_step(step, events_);
   show_until(step, t1);
   for (Observer* o : step_observers_) o->end_step(t1, theta);
-  expected_event_ = found || !events_located_ ? never : expected_time(step);
+  const bool foresees = !found && events_located_ && step.keeps_chain();
+  expected_event_ = foresees ? expected_time(step) : never;
 
   if (found) {
     stop_at(step, theta);
   } else {
-    integrator_->commit(jet_.y);
+    commit();
   }
   time_ = next_time;
   jet_.time = t1;
@@ -174,7 +200,7 @@ void Simulation::run_until(double end_time) {
   bool cut = false; // by the end: a run with a later end goes another way from here on
   while (jet_.time < end_time) {
     const double to_end = end_time - jet_.time;
-    const double wanted = choose_step();
+    const double wanted = choose_step(end_time);
     const bool last =
         wanted >= (1 - 1e-9) * to_end; // leaves no remainder of round-off size
     cut |= last;
@@ -203,6 +229,7 @@ double Simulation::next_checkpoint() const {
 
 void Simulation::make_checkpoint() {
   integrator_->restart(); // who goes on from here has no derivatives of the stages either
+  if (two_rate_) two_rate_->forget();
   Checkpoint checkpoint;
   archive(Archive::into(checkpoint));
   checkpoint_due_ = next_checkpoint();
@@ -216,7 +243,8 @@ void Simulation::restore(const Checkpoint& checkpoint) {
   archive(Archive::from(checkpoint));
   if (restart_step_.size() != events || (after_event_ && *after_event_ >= events))
     throw InputError("the checkpoint is of another scene");
-  if (statistics_.method) statistics_.method->in_use = integrator_->method_in_use();
+  if (statistics_.method)
+    statistics_.method->in_use = two_rates_ ? two_rates : integrator_->method_in_use();
   restored_at_ = jet_.time;
   for (const auto& o : observers_) o->skip_to(restored_at_);
   if (checkpoint_interval_ > 0) checkpoint_due_ = next_checkpoint();
@@ -235,10 +263,27 @@ void Simulation::archive(const Archive& a) {
   integrator_->archive(a.part("integrator"));
   dynamics_->archive(a.part("dynamics"));
   for (const auto& e : events_) e->archive(a.part(e->name()));
+  if (!two_rate_) return;
+  a("two_rates", two_rates_);
+  two_rate_->archive(a.part("two_rate"));
 }
 
-double Simulation::choose_step() {
+// The first step of the other kind is about as long as a step that is known to suit.
+void Simulation::choose_rates() {
+  if (!two_rate_ || two_rates_ == two_rate_->suits(jet_, two_rates_)) return;
+  two_rates_ = !two_rates_;
+  std::ranges::fill(restart_step_, 0.0);
+  after_event_.reset();
+  expected_event_ = never;
+  integrator_->restart();
+  two_rate_->forget();
+  if (!two_rates_) step_ = 0;
+}
+
+double Simulation::choose_step(double end_time) {
   if (limits_.fixed) return *limits_.fixed;
+  choose_rates();
+  if (two_rates_) jet_.absorbing_plane = two_rate_->collector();
   if (step_ == 0) {
     step_ =
         limits_.initial.value_or(integrator_->initial_step(*dynamics_, jet_.time, jet_.y));
@@ -249,19 +294,55 @@ double Simulation::choose_step() {
   double h = std::min(step_, limits_.longest);
   const double remaining = aim_beyond * (expected_event_ - jet_.time);
   if (remaining > 0 && remaining < 2 * h) h = remaining > h ? remaining / 2 : remaining;
-  return h;
+  const double to_end = end_time - jet_.time;
+  if (limits_.even_at_end && to_end > h && to_end < 2 * h) h = to_end / 2;
+  return two_rates_ ? even_macro_step(h) : h;
+}
+
+// A whole number of macro steps leads to the next time that must end one. They may be a little longer than
+// wanted, which the safety factor of the step size control allows for.
+double Simulation::even_macro_step(double h) const {
+  constexpr double stretch = 1.08;
+  h = std::min(h, two_rate_->longest_step());
+  double next = never;
+  for (const auto& e : events_) next = std::min(next, e->next_time(jet_.time));
+  const double remaining = next - jet_.time;
+  return std::isfinite(remaining) ? remaining / std::ceil(remaining / (stretch * h)) : h;
+}
+
+const Integrator& Simulation::stepping() const {
+  return two_rates_ ? two_rate_->integrator() : *integrator_;
+}
+
+StepOutcome Simulation::try_step(double h) {
+  return two_rates_ ? two_rate_->attempt(jet_, ledger_, h)
+                    : integrator_->attempt(*dynamics_, jet_.time, h, jet_.y);
+}
+
+void Simulation::count_cost() {
+  statistics_.evaluations = dynamics_->evaluations();
+  if (two_rate_) two_rate_->count(statistics_);
+}
+
+void Simulation::commit() {
+  if (!two_rates_) {
+    integrator_->commit(jet_.y);
+    return;
+  }
+  two_rate_->commit(jet_, ledger_, statistics_);
+  dynamics_->bind(jet_);
 }
 
 double Simulation::attempt_step(double h) {
   for (;;) {
-    const StepOutcome outcome = integrator_->attempt(*dynamics_, jet_.time, h, jet_.y);
-    statistics_.evaluations = dynamics_->evaluations();
+    const StepOutcome outcome = try_step(h);
+    count_cost();
     if (checks_coulomb_) {
       const TermReport::Checks checks = *dynamics_->checks();
       statistics_.coulomb_error = checks.last_error;
       statistics_.coulomb_violations = checks.violations;
     }
-    control_.set_error_order(integrator_->error_order());
+    control_.set_error_order(stepping().error_order());
     if (limits_.fixed) {
       if (std::isnan(outcome.error)) fail(h, "the state is not a number after");
       if (const auto bead = vanishing_link()) fail_at_link(h, *bead);
@@ -295,7 +376,7 @@ double Simulation::attempt_step(double h) {
 
 void Simulation::note_method() {
   MethodRecord& record = *statistics_.method;
-  const std::string_view now = integrator_->method_in_use();
+  const std::string_view now = two_rates_ ? two_rates : integrator_->method_in_use();
   if (now == record.in_use) return;
   // What the first step was taken with is the start, not a change.
   if (statistics_.steps > 1) ++record.changes;
@@ -309,7 +390,7 @@ std::optional<std::size_t> Simulation::vanishing_link() const {
   if (limit == 0) return std::nullopt;
   const std::size_t n = jet_.beads();
   const auto before = jet_.columns().position();
-  const auto after = JetColumns<const double>{integrator_->end_state(), n}.position();
+  const auto after = JetColumns<const double>{stepping().end_state(), n}.position();
   for (std::size_t k = jet_.first(), up = 0; k < n; up = k++) {
     if (closest_approach(before[k] - before[up], after[k] - after[up]) >= limit) continue;
     if (jet_.is_landed(k) && jet_.is_landed(up)) continue;
@@ -365,18 +446,22 @@ void Simulation::show_until(const DenseStep& step, double end) {
   for (const auto& o : observers_) {
     while (o->next_time() < end) {
       const double t = o->next_time();
-      snapshot_.resize(jet_.y.size());
-      step.state(std::clamp((t - step.t0) / step.h, 0.0, 1.0), snapshot_);
-      dynamics_->prescribe(t, snapshot_);
-      // Beads may have landed without an end of the step, and link 1 may have grown.
-      if (jet_.absorbing_plane || dynamics_->feeds()) {
+      const double theta = std::clamp((t - step.t0) / step.h, 0.0, 1.0);
+      // Beads may have landed or been born without an end of the step, and link 1 may have grown.
+      if (jet_.absorbing_plane || dynamics_->feeds() || !step.keeps_chain()) {
         JetState seen = jet_;
         Ledger ledger = ledger_;
-        seen.y = snapshot_, seen.time = t;
+        step.chain_at(theta, t, seen);
+        step.ledger_at(t, ledger);
+        if (step.keeps_chain()) dynamics_->prescribe(t, seen.y);
+        seen.time = t;
         if (dynamics_->feeds()) feed(seen, ledger);
         for (const auto& e : events_) e->anticipate(t, seen);
         show(*o, {t, std::as_const(seen).columns(), seen, ledger, statistics_});
       } else {
+        snapshot_.resize(jet_.y.size());
+        step.state(theta, snapshot_);
+        dynamics_->prescribe(t, snapshot_);
         show(*o, {t, {snapshot_, jet_.beads()}, jet_, ledger_, statistics_});
       }
     }
@@ -387,6 +472,14 @@ void Simulation::show_until(const DenseStep& step, double end) {
 // the state at the event is a step of the method itself, so that interpolation does not blur
 // the order.
 void Simulation::stop_at(const DenseStep& step, double theta) {
+  if (two_rates_) {
+    if (theta > 0) {
+      (void)two_rate_->attempt(jet_, ledger_, theta * step.h);
+      count_cost();
+      commit();
+    }
+    return;
+  }
   if (limits_.fixed && theta > 0) {
     integrator_->attempt(*dynamics_, step.t0, theta * step.h, jet_.y);
     integrator_->commit(jet_.y);
@@ -400,14 +493,14 @@ void Simulation::stop_at(const DenseStep& step, double theta) {
 
 void Simulation::apply_events(std::size_t located) {
   EventContext context{jet_, ledger_, statistics_, deposited_, refined_};
-  bool any = false;
+  bool any = false, only_end = true;
   for (std::size_t i = 0; i < events_.size();) {
     if (i != located && !events_[i]->due(jet_)) {
       ++i;
       continue;
     }
     apply(*events_[i], context);
-    any = true;
+    any = true, only_end &= events_[i]->leaves_motion();
     if (events_[i]->restarts_motion()) {
       after_event_ = i;
       if (restart_step_[i] > 0) step_ = restart_step_[i];
@@ -425,6 +518,7 @@ void Simulation::apply_events(std::size_t located) {
   dynamics_->bind(jet_);
   dynamics_->prescribe(jet_.time, jet_.y);
   integrator_->restart();
+  if (two_rates_) two_rate_->chain_changed(jet_, only_end);
 }
 
 void Simulation::apply(Event& event, EventContext& context) {
@@ -438,7 +532,7 @@ void Simulation::apply(Event& event, EventContext& context) {
 }
 
 void Simulation::fail(double h, const char* why) {
-  const std::size_t worst = integrator_->worst_component();
+  const std::size_t worst = stepping().worst_component();
   FirstNan search(*dynamics_, jet_.beads());
   integrator_->restart();
   (void)integrator_->attempt(search, jet_.time, h, jet_.y);

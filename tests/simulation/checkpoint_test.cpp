@@ -61,7 +61,7 @@ double time_of(const Checkpoint& c) {
 
 /// All that a run knows of itself, but the wall time: what one more checkpoint would say.
 Checkpoint without_wall_time(Checkpoint c) {
-  c.erase("statistics.wall_time");
+  std::erase_if(c, [](const auto& list) { return list.first.ends_with("wall_time"); });
   return c;
 }
 
@@ -197,7 +197,7 @@ Scene landing_scene(const std::string& method) {
 }
 
 TEST(Checkpoint, keeps_the_pace_of_the_landings) {
-  for (const std::string method : {"dormand-prince", "auto"}) {
+  for (const std::string method : {"dormand-prince", "two-rate"}) {
     SCOPED_TRACE(method);
     const auto whole = expect_same_bits(landing_scene(method), 15e-3, 1.7e-3);
     EXPECT_GT(whole.simulation->statistics().landings, 100U);

@@ -49,7 +49,7 @@ private:
 
   void advance(double t, double theta);
   void integrate(double theta);
-  void pass(double landing_time);
+  void pass(const DenseStep::InnerTime& inner);
   void look_into_step(double theta, double t, double past);
   template <class Add>
   void list(const JetEnergies& now, const Add& add) const;
@@ -61,11 +61,11 @@ private:
 
   const DenseStep* step_ = nullptr; // in progress
   std::span<const std::unique_ptr<Event>> events_;
-  double theta_ = 0;           // accounted for up to here
-  std::vector<double> inner_;  // times of landings that do not end the step, ascending
-  std::size_t next_inner_ = 0; // of them
-  JetState seen_;              // inside a step
-  JetState before_;            // an event
+  double theta_ = 0;                        // accounted for up to here
+  std::vector<DenseStep::InnerTime> inner_; // what does not end the step, ascending
+  std::size_t next_inner_ = 0;              // of them
+  JetState seen_;                           // inside a step
+  JetState before_;                         // an event
 };
 
 } // namespace ehdjet

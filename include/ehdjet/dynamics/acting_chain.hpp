@@ -18,12 +18,32 @@ struct HeldEnds {
   bool first = false, last = false;
 };
 
+/// Knows how beads move that somebody else integrates: those of another part of the chain.
+class Guide {
+public:
+  virtual ~Guide() = default;
+  /// Puts the led beads, with the columns of their links, where they are at time t.
+  virtual void prescribe(double t, JetColumns<double> y) const = 0;
+};
+
+/// A part of a chain that moves freely while the beads above or below it are led.
+struct LedParts {
+  std::size_t head = 0; ///< how many beads are led at the nozzle's end
+  std::size_t tail = 0; ///< and at the other end
+  const Guide* guide = nullptr;
+  /// Beads that have passed the collector fly on under the forces that they would feel with their own
+  /// charge. That keeps their motion smooth in steps that many beads pass in. Otherwise they fly on
+  /// like the bead before them.
+  bool passed_fly_on = false;
+};
+
 /// What keeps the beads of a scene from moving freely, besides the collector.
 struct Constraints {
   const Inflow* inflow = nullptr; ///< null: bead 0 is an ordinary bead
   HeldEnds ends = {};
   /// Landed beads rest in the place of their image charges and act on no other bead (model 5).
   bool grounded_collector = false;
+  LedParts led = {};
 };
 
 /// A chain as force terms see it: which beads move freely, what they carry as they act, and a
@@ -57,6 +77,12 @@ public:
   /// Beads that the last stage has absorbed, from the end of the chain on: the first of them in the
   /// chain is the last entry. Empty if none has passed the plane since the step began.
   [[nodiscard]] std::span<const std::size_t> absorbed() const { return absorbed_; }
+  [[nodiscard]] const std::optional<double>& absorbing_plane() const {
+    return absorbing_plane_;
+  }
+  /// The stage of the absorbed beads alone, which have their own charges in it and feel those of the
+  /// other sources of the last stage. To be called after all that needs the last stage.
+  const Stage& at_absorbed();
 
 private:
   void absorb(std::span<const double> y);

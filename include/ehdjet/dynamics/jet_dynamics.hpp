@@ -28,7 +28,8 @@ namespace ehdjet {
 /// (model 6). Pairs of charges have no part in it.
 class JetDynamics final : public OdeSystem, private StiffPart {
 public:
-  void add(std::unique_ptr<ForceTerm> term) {
+  /// A term may belong to the equations of motion of several parts of one chain.
+  void add(std::shared_ptr<ForceTerm> term) {
     terms_.push_back(std::move(term)), table_.reset();
   }
   /// Bead 0 is the nozzle and beads are born there. Without it bead 0 is an ordinary bead.
@@ -36,17 +37,23 @@ public:
   void hold(HeldEnds ends);
   /// Beads that have landed act on no other bead.
   void ground_collector();
+  /// Only a part of the chain moves freely. Rates are those of this part, under the charges of this part
+  /// and, if only its tail is led, of those.
+  void lead(const LedParts& led);
 
   /// Must be called after the chain (not merely its state) has changed.
   void bind(const JetState& jet);
 
   void evaluate(double t, std::span<const double> y, std::span<double> rate) override {
-    evaluate(t, y, rate, {}, {});
+    evaluate(t, y, rate, targets_, sources_);
   }
   /// The rates of some beads only, `targets`, under the Coulomb force of the charges `sources`.
   /// Other entries of `rate` get anything.
   void evaluate(double t, std::span<const double> y, std::span<double> rate,
                 BeadRange targets, BeadRange sources);
+  /// All but beads that have passed the collector and the few before them, which feel the kink in
+  /// their motion, while those fly on.
+  [[nodiscard]] std::size_t judged_rows(std::span<const double> end) const override;
   [[nodiscard]] StiffPart* stiff_part() override { return this; }
   /// Puts the nozzle and an embryo in their places at time t.
   void prescribe(double t, std::span<double> y) const override;
@@ -54,10 +61,14 @@ public:
   [[nodiscard]] bool feeds() const { return feeds_; }
 
   [[nodiscard]] std::uint64_t evaluations() const { return evaluations_; }
-  [[nodiscard]] const std::vector<std::unique_ptr<ForceTerm>>& terms() const {
+  [[nodiscard]] const std::vector<std::shared_ptr<ForceTerm>>& terms() const {
     return terms_;
   }
   [[nodiscard]] const Constraints& constraints() const { return chain_.constraints(); }
+  /// 1/m of the beads as they act at the last evaluation [1/kg].
+  [[nodiscard]] std::span<const double> inverse_mass() const {
+    return chain_.inverse_mass();
+  }
   /// Pairs of beads at zero distance that were skipped so far, all evaluations together.
   [[nodiscard]] std::uint64_t coincident_pairs() const;
   /// Comparisons of a force with an exact method; none if there are no comparisons.
@@ -73,6 +84,7 @@ public:
                                       std::size_t bead);
 
 private:
+  void let_fly_on(Vec3View force);
   void linearize(double t, std::span<const double> y) override;
   void factorize(double eta) override { jacobian_.factorize(eta, chain_.mass()); }
   void solve(std::span<double> x) const override { jacobian_.solve(x); }
@@ -81,10 +93,11 @@ private:
 
   void bind_columns(std::shared_ptr<const BeadTable> table);
 
-  std::vector<std::unique_ptr<ForceTerm>> terms_;
+  std::vector<std::shared_ptr<ForceTerm>> terms_;
   std::shared_ptr<const BeadTable> table_; // that the terms are bound to
   std::vector<ForceTerm*> with_columns_;   // terms that add integrated columns
   std::vector<std::size_t> resting_;       // entries of the state whose rate is zero
+  BeadRange targets_, sources_;            // of a part of the chain
   std::shared_ptr<const Inflow> inflow_;
   bool feeds_ = false;
   ActingChain chain_;

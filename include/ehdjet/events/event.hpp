@@ -5,6 +5,7 @@
 #include "ehdjet/jet/exchange.hpp"
 #include "ehdjet/jet/ledger.hpp"
 
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -42,6 +43,11 @@ public:
   /// Another event has ended the step at `time`: what was located behind that has not happened.
   virtual void overtaken(double /*time*/) {}
 
+  /// The first time after t at which a step must end because the event may happen then [s].
+  [[nodiscard]] virtual double next_time(double /*t*/) const {
+    return std::numeric_limits<double>::infinity();
+  }
+
   /// The exact time of an event that was located and that happens at given times [s].
   [[nodiscard]] virtual std::optional<double> scheduled_time() const { return {}; }
 
@@ -63,6 +69,9 @@ public:
   /// The motion right after the event has another time scale than before it: the next step size
   /// is the one that suited after the last event of this kind, not the last step's proposal.
   [[nodiscard]] virtual bool restarts_motion() const { return false; }
+
+  /// Whether it only takes beads off the end of the chain that did not move any more.
+  [[nodiscard]] virtual bool leaves_motion() const { return false; }
 
   /// What the event remembers between steps.
   virtual void archive(const Archive& /*a*/) {}

@@ -39,6 +39,7 @@ public:
   void anticipate(double t, JetState& jet) const override;
   void list_inner_times(std::vector<double>& times) const override;
   void apply(EventContext& context) override;
+  [[nodiscard]] bool leaves_motion() const override { return true; }
   void archive(const Archive& a) override {
     a("steps_per_landing", steps_per_landing_), a("last_step", last_step_);
   }
@@ -47,9 +48,10 @@ private:
   /// How close a bead has to come to a resting bead below it to land there; 0: none rests [m].
   [[nodiscard]] static double touching_distance(const JetState& jet, std::size_t bead);
 
-  /// A bead at the collector.
+  /// A bead at the collector. Beads may be born while it is on record: they change its number, but not
+  /// its distance from the end of the chain.
   struct Arrival {
-    std::size_t bead = 0;
+    std::size_t from_end = 0;          ///< of the chain at the start of the step
     double time = 0;                   ///< [s]
     std::vector<double> state;         ///< its integrated columns
     std::optional<double> link_length; ///< absent: that of the jet as it is [m]
@@ -59,9 +61,9 @@ private:
   [[nodiscard]] bool has_arrived(const JetState& jet, std::size_t bead) const;
   [[nodiscard]] Arrival arrival_inside(const DenseStep& step, std::size_t bead,
                                        double theta) const;
-  [[nodiscard]] Arrival arrival_now(const JetState& jet, std::size_t bead) const;
+  [[nodiscard]] Arrival arrival_now(const JetState& jet, std::size_t from_end) const;
   [[nodiscard]] std::vector<Arrival> arrivals(const JetState& jet) const;
-  static void put_on_collector(JetState& jet, const Arrival& arrival);
+  static void put_on_collector(JetState& jet, std::size_t bead, const Arrival& arrival);
   static void remove_leading(EventContext& context, double time);
   void keep_pace(EventContext& context, std::size_t landings);
 
@@ -72,9 +74,10 @@ private:
   double distance_;
   std::size_t first_bead_;
   bool may_pass_;
-  std::optional<std::size_t> located_; // the bead that ends the step
-  std::vector<Arrival> passing_;       // beads that do not, in the order of their landing
-  double steps_per_landing_ = 100;     // recent average
+  std::optional<std::size_t>
+      located_;                    // the bead that ends the step, from the end of the chain
+  std::vector<Arrival> passing_;   // beads that do not, in the order of their landing
+  double steps_per_landing_ = 100; // recent average
   std::uint64_t last_step_ = 0;
 };
 

@@ -24,6 +24,7 @@ public:
   [[nodiscard]] bool due(const JetState& jet) const override;
   /// A multiple of t_ref ends a step only if there is something to do.
   [[nodiscard]] std::optional<double> locate(const DenseStep& step) override;
+  [[nodiscard]] double next_time(double t) const override;
   [[nodiscard]] std::optional<double> scheduled_time() const override { return located_; }
   [[nodiscard]] std::optional<double> predict(const DenseStep&) const override {
     return {};
@@ -55,6 +56,7 @@ public:
            Refinement::Totals totals = {}, bool at_step_ends = false);
   [[nodiscard]] std::string_view name() const override { return "refinement"; }
   [[nodiscard]] bool due(const JetState& jet) const override;
+  [[nodiscard]] double next_time(double t) const override;
   /// Never inside a step.
   [[nodiscard]] std::optional<double> locate(const DenseStep& step) override;
   [[nodiscard]] std::optional<double> predict(const DenseStep&) const override {

@@ -39,6 +39,10 @@ public:
     active_->dense_output(theta, first, out);
   }
   void commit(std::vector<double>& y) override;
+  [[nodiscard]] std::span<const double> end_rate() const override {
+    return active_->end_rate();
+  }
+  void start_from_rate(std::span<const double> rate) override;
   void restart() override;
   void archive(const Archive& a) override;
   double initial_step(OdeSystem& system, double t, std::span<const double> y) override;

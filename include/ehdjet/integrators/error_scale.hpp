@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -19,11 +20,16 @@ struct ErrorScale {
   bool root_mean_square = false;
 
   /// Norm of `error`, with |y| the larger of |y0|, |y1|. Not a number if any component is not.
+  /// Of each column only the first `judged` rows count.
   [[nodiscard]] double norm(std::span<const double> error, std::span<const double> y0,
-                            std::span<const double> y1) const;
+                            std::span<const double> y1,
+                            std::size_t judged = all_rows) const;
   /// Component where error / allowed is largest or not a number.
   [[nodiscard]] std::size_t worst(std::span<const double> error, std::span<const double> y0,
-                                  std::span<const double> y1) const;
+                                  std::span<const double> y1,
+                                  std::size_t judged = all_rows) const;
+
+  static constexpr std::size_t all_rows = std::numeric_limits<std::size_t>::max();
 };
 
 } // namespace ehdjet

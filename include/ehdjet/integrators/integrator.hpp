@@ -49,6 +49,12 @@ public:
 
   /// Makes the end of the last attempt the state: swaps it into `y`.
   virtual void commit(std::vector<double>& y) = 0;
+  /// f at the end of the last attempt, valid until the next one or `commit`; empty if the method
+  /// does not evaluate it.
+  [[nodiscard]] virtual std::span<const double> end_rate() const { return {}; }
+  /// What f(t, y) is at the start of the next attempt, if the method can make use of it. To be called
+  /// after `restart`.
+  virtual void start_from_rate(std::span<const double> /*rate*/) {}
   /// Forgets what is known about f(t, y). To be called after anything but `commit` has changed y.
   virtual void restart() = 0;
   /// What the next steps depend on after a restart.

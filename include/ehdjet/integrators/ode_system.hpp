@@ -2,6 +2,8 @@
 
 #include <array>
 #include <complex>
+#include <cstddef>
+#include <limits>
 #include <span>
 
 namespace ehdjet {
@@ -35,6 +37,11 @@ public:
   /// for each state that it makes, before it evaluates f there.
   virtual void prescribe(double /*t*/, std::span<double> /*y*/) const {}
   virtual void evaluate(double t, std::span<const double> y, std::span<double> rate) = 0;
+  /// How many rows of each column of y count in the error of a step that ends at `end`: what the
+  /// rows behind them do from there on does not matter.
+  [[nodiscard]] virtual std::size_t judged_rows(std::span<const double> /*end*/) const {
+    return std::numeric_limits<std::size_t>::max();
+  }
   /// For implicit methods; null if the system has no such part.
   [[nodiscard]] virtual StiffPart* stiff_part() { return nullptr; }
 };

@@ -50,6 +50,7 @@ private:
   std::vector<double> start_rate_, stage_, y1_, error_;
   std::span<const double> y0_;
   double h_ = 0;
+  std::size_t judged_ = 0;   // rows of each column
   bool start_known_ = false; // rate and linearization at the start of the step
 };
 

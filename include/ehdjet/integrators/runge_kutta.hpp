@@ -30,6 +30,8 @@ public:
   void dense_output(double theta, std::size_t first, std::span<double> out) const override;
   void commit(std::vector<double>& y) override;
   void restart() override { first_known_ = false; }
+  [[nodiscard]] std::span<const double> end_rate() const override;
+  void start_from_rate(std::span<const double> rate) override;
   double initial_step(OdeSystem& system, double t, std::span<const double> y) override;
 
 private:
@@ -47,6 +49,7 @@ private:
   std::vector<double> stage_, y1_, error_;
   std::span<const double> y0_;
   double t_ = 0, h_ = 0;
+  std::size_t judged_ = 0; // rows of each column
   bool first_known_ = false, end_known_ = false, extra_known_ = false;
 };
 

@@ -9,10 +9,15 @@
 /// of the file. The part is created at once, without rows. `interval` is the time between rows [s].
 namespace ehdjet {
 
-/// Observables of the whole jet and what `further` has about it, one row per time.
+/// What observables have that not every run has.
+struct FurtherObservables {
+  bool coulomb_error = false;
+  bool two_rates = false;
+  std::shared_ptr<Accounts> accounts = {}; ///< none if null
+};
+/// Observables of the whole jet, one row per time.
 std::unique_ptr<Observer> record_observables(std::shared_ptr<RunFile> file, double interval,
-                                             bool with_coulomb_error = false,
-                                             const std::shared_ptr<Accounts>& further = {});
+                                             const FurtherObservables& further = {});
 /// All beads of jets that have this table of columns.
 std::unique_ptr<Observer> record_frames(std::shared_ptr<RunFile> file, double interval,
                                         const BeadTable& table);

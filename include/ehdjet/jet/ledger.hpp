@@ -59,14 +59,25 @@ struct MethodRecord {
   std::uint64_t changes = 0; ///< of the method so far
 };
 
+/// Of a run that can take steps with two rates.
+struct TwoRateRecord {
+  std::uint64_t steps = 0;             ///< macro steps
+  std::uint64_t inner_evaluations = 0; ///< of the right-hand side of the inner beads
+  std::uint64_t inner_beads = 0;       ///< how many there are now
+  /// Coulomb sums of those steps with everything included: pairs over all pairs of the chain.
+  double full_sums = 0;
+};
+
 /// Cost of the run so far.
 struct RunStatistics {
-  std::uint64_t evaluations = 0; ///< of the right-hand side
-  std::uint64_t steps = 0;       ///< accepted
-  std::uint64_t rejected = 0;    ///< attempts
+  std::uint64_t evaluations =
+      0; ///< of the right-hand side; with two rates, of the downstream beads
+  std::uint64_t steps = 0;    ///< accepted
+  std::uint64_t rejected = 0; ///< attempts
   std::uint64_t insertions = 0, releases = 0, landings = 0;
   std::optional<std::uint64_t> refinements; ///< none in a run that does not refine
   std::optional<MethodRecord> method;       ///< none if the scene names a method
+  std::optional<TwoRateRecord> two_rates;   ///< none if the scene has one rate
   /// Of the Coulomb force at its last check, relative; none without checks.
   std::optional<double> coulomb_error;
   std::uint64_t coulomb_violations = 0; ///< checks that found more than the tolerance

@@ -158,6 +158,8 @@ struct IntegratorConfig {
   ErrorNorm norm = ErrorNorm::max;
   EventPlacement events = EventPlacement::located;
   LandingSteps landings = LandingSteps::automatic;
+  std::optional<std::size_t> inner_beads; ///< of two rates; none: 24, adapted
+  std::optional<double> downstream_rtol;  ///< of two rates; none: rtol [-]
   bool operator==(const IntegratorConfig&) const = default;
 };
 

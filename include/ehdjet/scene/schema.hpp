@@ -308,7 +308,8 @@ void describe(V& v, IntegratorConfig& c) {
   v.optional(
       "method", c.method, integration_method_names(),
       "explicit Runge-Kutta method, the linearly implicit ros34pw2 for stiff fluids, or "
-      "\"auto\": dormand-prince, and ros34pw2 while stability would limit its steps");
+      "\"auto\": dormand-prince, and ros34pw2 while stability would limit its steps; with "
+      "two rates once a jet from a nozzle has 200 beads. \"two-rate\" does so from 64 on");
   v.optional("rtol", c.rtol, between("-", 1e-14, 0.1),
              "relative tolerance of the adaptive step; excludes `step`",
              "1e-06 unless `step` is given");
@@ -334,6 +335,11 @@ void describe(V& v, IntegratorConfig& c) {
       "landings", c.landings, landing_steps,
       "adaptive steps end at every landing, or only while landings are rare; their times "
       "are located in both cases");
+  v.optional("inner_beads", c.inner_beads, between("-", 8, 1e5),
+             "two rates: how many beads at the nozzle take short steps",
+             "24, and more if they turn out to be too few");
+  v.optional("downstream_rtol", c.downstream_rtol, between("-", 1e-14, 0.1),
+             "two rates: relative tolerance of the long steps of all other beads", "rtol");
 }
 
 template <class V>

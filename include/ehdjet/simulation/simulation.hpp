@@ -7,6 +7,7 @@
 #include "ehdjet/integrators/integrator.hpp"
 #include "ehdjet/integrators/step_size_control.hpp"
 #include "ehdjet/observers/observer.hpp"
+#include "ehdjet/simulation/two_rate.hpp"
 
 #include <functional>
 #include <limits>
@@ -27,6 +28,8 @@ struct StepLimits {
   /// A step in which a link becomes shorter than this is too long, and if no step is short
   /// enough, the run stops; 0: links may vanish [m].
   double shortest_link = 0;
+  /// The end of a run is approached in equal steps: for many short runs one after the other.
+  bool even_at_end = false;
 };
 
 /// A jet, what moves it, what happens to it and who watches.
@@ -43,6 +46,8 @@ public:
   void add(std::unique_ptr<Event> event);
   /// Any number of observers; each is called in the order in which they were added.
   void add(std::shared_ptr<Observer> observer);
+  /// Takes macro steps with two rates while the chain is long enough for them.
+  void use_two_rates(std::unique_ptr<TwoRate> two_rate);
   /// Apply events at the end of the step that contains them, as the paper did: first order in
   /// the step size, whatever the method.
   void snap_events_to_step_ends() { events_located_ = false; }
@@ -59,6 +64,11 @@ public:
   /// and before the run.
   /// errors : InputError if it is not from such a scene
   void restore(const Checkpoint& checkpoint);
+
+  /// Goes on with another chain of the same columns, from its time on. What is known about suitable steps
+  /// and expected events is kept.
+  void take_over(JetState jet, const Ledger& ledger);
+  void archive(const Archive& a);
 
   /// Runs to `end_time` [s]; observers see times up to and including it.
   /// errors : RunError with time, bead and term when the step size collapses or a state is not
@@ -77,9 +87,16 @@ private:
     double theta;
   };
 
-  double choose_step();
-  void advance(double h, double end_time);
+  void choose_rates();
+  double choose_step(double end_time);
+  [[nodiscard]] double even_macro_step(double h) const;
+  [[nodiscard]] const Integrator& stepping() const;
+  StepOutcome try_step(double h);
+  void count_cost();
   double attempt_step(double h);
+  void advance(double h, double end_time);
+  void advance(const DenseStep& step, double end_time);
+  void commit();
   void note_method();
   [[nodiscard]] std::optional<std::size_t> vanishing_link() const;
   [[noreturn]] void fail_at_link(double h, std::size_t bead);
@@ -90,7 +107,6 @@ private:
   void feed(JetState& jet, Ledger& ledger) const;
   void apply_events(std::size_t located);
   void apply(Event& event, EventContext& context);
-  void archive(const Archive& a);
   void make_checkpoint();
   [[nodiscard]] double next_checkpoint() const;
   [[nodiscard]] JetSnapshot now() const;
@@ -99,6 +115,8 @@ private:
   JetState jet_;
   std::unique_ptr<JetDynamics> dynamics_;
   std::unique_ptr<Integrator> integrator_;
+  std::unique_ptr<TwoRate> two_rate_; // null: every step has one rate
+  bool two_rates_ = false;            // the step at hand has two
   StepLimits limits_;
   StepSizeControl control_;
   bool checks_coulomb_;
