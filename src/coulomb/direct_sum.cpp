@@ -6,6 +6,7 @@
 #include <omp.h>
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "scaled_charges.hpp"
@@ -33,7 +34,9 @@ public:
   void add_force_from(const PointCharges& sources, const PointCharges& targets,
                       Vec3View force) override {
     const PointCharges groups[]{sources, targets};
-    sum(groups, std::max(sources.size(), targets.size()), force);
+    const double pairs =
+        static_cast<double>(sources.size()) * static_cast<double>(targets.size());
+    sum(groups, static_cast<std::size_t>(std::sqrt(pairs)), force);
   }
   [[nodiscard]] std::size_t coincident_pairs() const override { return coincident_pairs_; }
   [[nodiscard]] CoulombAccuracy accuracy() const override { return {.tolerance = 0}; }

@@ -143,9 +143,8 @@ void settle_step(IntegratorConfig& i, const SceneText& text) {
   if (i.step && method.kind == MethodKind::chooses)
     text.fail(
         "integrator.step",
-        fmt::format("integrator.step = {} s and {}: \"auto\" chooses the "
-                    "method by the steps that a tolerance allows. Name a method, or give "
-                    "integrator.rtol instead",
+        fmt::format("integrator.step = {} s and {}: it chooses the steps and methods that a "
+                    "tolerance allows. Name another method, or give integrator.rtol instead",
                     *i.step, method_is));
   if (i.rtol && !has_error_estimate)
     text.fail(
@@ -186,6 +185,36 @@ void check_adaptive_keys(const IntegratorConfig& i, const SceneText& text) {
                     "integrator.{} = {} s and integrator.min_step = {} s: must be at least "
                     "the shortest step",
                     name, *value, i.min_step));
+}
+
+/// Two rates are for beads that are born at a nozzle and repel each other.
+void check_two_rates(const SceneConfig& c, const SceneText& text) {
+  const IntegratorConfig& i = c.integrator;
+  const bool named = i.method == "two-rate";
+  const auto refuse = [&](const char* key, const std::string& why) {
+    text.fail(fmt::format("integrator.{}", key), why);
+  };
+  const char* missing = !c.nozzle    ? "[nozzle], where the fast beads are"
+                        : !c.coulomb ? "[coulomb], whose sums it saves"
+                                     : nullptr;
+  if (named && missing != nullptr)
+    refuse("method", fmt::format("integrator.method = \"two-rate\" needs {}. Take \"auto\" (the "
+                                 "default)",
+                                 missing));
+  if (named && i.events == EventPlacement::step_end)
+    refuse("events", "integrator.events = \"step-end\" and integrator.method = \"two-rate\": "
+                     "beads are born within its steps. Take \"located\" (the default)");
+  if (named && i.landings == LandingSteps::located)
+    refuse("landings", "integrator.landings = \"located\" and integrator.method = \"two-rate\": "
+                       "beads land within its steps. Take \"auto\" (the default)");
+  const bool may = (named || i.method == "auto") && missing == nullptr;
+  for (const auto& [key, given] : {std::pair{"inner_beads", i.inner_beads.has_value()},
+                                   {"downstream_rtol", i.downstream_rtol.has_value()}})
+    if (given && !may)
+      refuse(key, fmt::format("integrator.{} is about two rates, which this scene cannot have: they "
+                              "need [nozzle], [coulomb] and integrator.method = \"two-rate\" or "
+                              "\"auto\". Remove it",
+                              key));
 }
 
 template <class Refuse>
@@ -343,6 +372,7 @@ void settle(SceneConfig& config, const SceneText& text) {
   check_field(config, text);
   settle_step(config.integrator, text);
   check_adaptive_keys(config.integrator, text);
+  check_two_rates(config, text);
   if (config.integrator.stress_scale && !config.viscoelasticity)
     text.fail(
         "integrator.stress_scale",
