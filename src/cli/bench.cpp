@@ -27,6 +27,7 @@ struct BenchOptions {
   std::optional<std::string> solver, method;
   std::optional<std::size_t> threads;
   bool no_serial = false, quiet = false, force = false;
+  std::string rates = "both";
 };
 
 std::vector<std::string> overrides_of(const BenchOptions& options) {
@@ -39,70 +40,107 @@ std::vector<std::string> overrides_of(const BenchOptions& options) {
   return all;
 }
 
+/// One run of a row of the table, on one thread and on all of them.
 struct Row {
   const Table2Row* paper;
+  std::string_view rates; // "one" or "two"
   double end_time;
   std::optional<Table2Run> serial;
   Table2Run parallel;
 
+  [[nodiscard]] bool is_published() const { return paper->processors > 0; }
   [[nodiscard]] std::optional<double> efficiency(std::size_t threads) const {
     if (!serial) return std::nullopt;
     return serial->statistics.wall_time
            / (parallel.statistics.wall_time * static_cast<double>(threads));
   }
-  [[nodiscard]] double microseconds() const { // per evaluation, with all threads
-    return 1e6 * parallel.statistics.wall_time
-           / static_cast<double>(parallel.statistics.evaluations);
+  [[nodiscard]] double per_ms(double amount) const { return 1e-3 * amount / end_time; }
+  /// Coulomb sums, with those between few beads as parts of one.
+  [[nodiscard]] double full_sums() const {
+    const RunStatistics& s = parallel.statistics;
+    const auto all = static_cast<double>(s.evaluations);
+    return s.two_rates ? s.two_rates->full_sums : all;
   }
 };
+
+/// Exponent of the time per millisecond in the number of beads, between the first and the last row
+/// that refines; none with fewer than two.
+std::optional<double> growth(const std::vector<Row>& rows, std::string_view rates) {
+  const Row *first = nullptr, *last = nullptr;
+  for (const Row& r : rows)
+    if (r.rates == rates && r.paper->length > 0) (first == nullptr ? first : last) = &r;
+  if (last == nullptr) return std::nullopt;
+  const auto cost = [](const Row& r) {
+    return std::log(r.per_ms(r.parallel.statistics.wall_time));
+  };
+  return (cost(*last) - cost(*first))
+         / std::log(last->parallel.stationary_beads / first->parallel.stationary_beads);
+}
 
 std::string number(std::optional<double> value, int digits) {
   return value && std::isfinite(*value) ? fmt::format("{:.{}f}", *value, digits) : "";
 }
 
 void write_csv(TextOutput& out, const std::vector<Row>& rows, std::size_t threads) {
-  out.print("refinement_length_cm,simulated_s,beads_mean,beads_stationary,beads_before_"
-            "refinement,"
-            "threads,wall_1_s,wall_s,efficiency,evaluations,us_per_evaluation,paper_beads,"
-            "paper_threads,paper_wall_s,paper_efficiency\n");
+  out.print(
+      "refinement_length_cm,rates,simulated_s,beads_mean,beads_stationary,beads_before_"
+      "refinement,threads,wall_1_s,wall_s,efficiency,evaluations,full_sums,paper_beads,"
+      "paper_threads,paper_wall_s,paper_efficiency\n");
   for (const Row& r : rows) {
     const Table2Run& m = r.parallel;
-    out.print("{},{},{:.3f},{:.3f},{},{},{},{:.3f},{},{},{:.3f},{},{},{:.0f},{}\n",
-              r.paper->length == 0 ? "" : r.paper->name, r.end_time, m.mean_beads,
-              m.stationary_beads, number(m.beads_before, 3), threads,
-              r.serial ? number(r.serial->statistics.wall_time, 3) : "",
+    out.print("{},{},{},{:.3f},{:.3f},{},{},{},{:.3f},{},{},{:.0f},",
+              r.paper->length == 0 ? "" : r.paper->name, r.rates == "one" ? 1 : 2,
+              r.end_time, m.mean_beads, m.stationary_beads, number(m.beads_before, 3),
+              threads, r.serial ? number(r.serial->statistics.wall_time, 3) : "",
               m.statistics.wall_time, number(r.efficiency(threads), 4),
-              m.statistics.evaluations, r.microseconds(), r.paper->beads,
-              r.paper->processors, r.paper->wall, r.paper->efficiency);
+              m.statistics.evaluations, r.full_sums());
+    if (r.is_published())
+      out.print("{},{},{:.0f},{}\n", r.paper->beads, r.paper->processors, r.paper->wall,
+                r.paper->efficiency);
+    else
+      out.print(",,,\n");
   }
   out.close();
 }
 
 std::string markdown(const std::vector<Row>& rows, std::size_t threads) {
-  std::string text = fmt::format("| L~ (cm) | simulated (s) | beads, mean | stationary | "
-                                 "before refining | wall, 1 thread (s) | "
-                                 "wall, {} threads (s) | eta | evaluations | us per "
-                                 "evaluation | paper: beads | wall, 24 "
-                                 "cores (s) | eta |\n"
-                                 "|---|---|---|---|---|---|---|---|---|---|---|---|---|\n",
-                                 threads);
-  double wall = 0, paper = 0;
+  std::string text = fmt::format(
+      "| L~ (cm) | rates | simulated (s) | beads, mean | stationary | before refining "
+      "| wall, 1 thread (s) | wall, {} threads (s) | eta | Coulomb sums per ms | ms per "
+      "simulated ms | paper: beads | wall, 24 cores (s) | eta |\n"
+      "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n",
+      threads);
   for (const Row& r : rows) {
     const Table2Run& m = r.parallel;
-    text += fmt::format(
-        "| {} | {} | {:.1f} | {:.1f} | {} | {} | {:.2f} | {} | {} | {:.1f} | {} | "
-        "{:.0f} | {} |\n",
-        r.paper->name, r.end_time, m.mean_beads, m.stationary_beads,
-        number(m.beads_before, 1),
-        r.serial ? number(r.serial->statistics.wall_time, 2) : "", m.statistics.wall_time,
-        number(r.efficiency(threads), 2), m.statistics.evaluations, r.microseconds(),
-        r.paper->beads, r.paper->wall, r.paper->efficiency);
-    wall += m.statistics.wall_time, paper += r.paper->wall;
+    text +=
+        fmt::format("| {} | {} | {} | {:.1f} | {:.1f} | {} | {} | {:.2f} | {} | {:.0f} | "
+                    "{:.2f} | ",
+                    r.paper->name, r.rates, r.end_time, m.mean_beads, m.stationary_beads,
+                    number(m.beads_before, 1),
+                    r.serial ? number(r.serial->statistics.wall_time, 2) : "",
+                    m.statistics.wall_time, number(r.efficiency(threads), 2),
+                    r.per_ms(r.full_sums()), 1e3 * r.per_ms(m.statistics.wall_time));
+    text += r.is_published() ? fmt::format("{} | {:.0f} | {} |\n", r.paper->beads,
+                                           r.paper->wall, r.paper->efficiency)
+                             : " | | |\n";
   }
-  return text
-         + fmt::format(
-             "\nAll rows: {:.1f} s on {} threads; the paper: {:.0f} s on 24 cores.\n", wall,
-             threads, paper);
+  for (const std::string_view rates : {"one", "two"}) {
+    double wall = 0, paper = 0;
+    for (const Row& r : rows)
+      if (r.rates == rates && r.is_published())
+        wall += r.parallel.statistics.wall_time, paper += r.paper->wall;
+    if (wall == 0) continue;
+    text += fmt::format(
+        "\n{} rate{}: the rows of the paper took {:.1f} s on {} threads, there "
+        "{:.0f} s on 24 cores.",
+        rates == "one" ? "One" : "Two", rates == "one" ? "" : "s", wall, threads, paper);
+    if (const auto exponent = growth(rows, rates))
+      text += fmt::format(
+          " The time per simulated ms grows with the beads to the power {:.2f}.",
+          *exponent);
+    text += "\n";
+  }
+  return text;
 }
 
 std::string provenance() {
@@ -112,43 +150,66 @@ std::string provenance() {
   return text;
 }
 
+bool is_chosen(const BenchOptions& options, const Table2Row& row) {
+  return std::ranges::find(options.rows, row.name) != options.rows.end();
+}
+
+struct Job {
+  const Table2Row* row;
+  std::string_view rates;
+  Scene scene;
+};
+
+Scene scene_of(const BenchOptions& options, const Table2Row& row, std::string_view rates) {
+  std::vector<std::string> overrides = overrides_of(options);
+  if (row.processors == 0)
+    overrides.push_back(fmt::format("refinement.length={}", row.length));
+  if (rates == "two") overrides.emplace_back("integrator.method=\"two-rate\"");
+  return read_scene(
+      std::filesystem::path(options.scenes) / fmt::format("{}.toml", row.scene), overrides);
+}
+
 void bench_table2(const BenchOptions& options) {
-  std::vector<const Table2Row*> chosen;
-  std::vector<Scene> scenes; // all of them are read before the first run
-  for (const Table2Row& row : table2) {
-    if (!options.rows.empty()
-        && std::ranges::find(options.rows, row.name) == options.rows.end())
-      continue;
-    chosen.push_back(&row);
-    scenes.push_back(read_scene(std::filesystem::path(options.scenes)
-                                    / fmt::format("{}.toml", row.scene),
-                                overrides_of(options)));
-  }
+  std::vector<const Table2Row*> lengths;
+  for (const Table2Row& row : table2)
+    if (options.rows.empty() || is_chosen(options, row)) lengths.push_back(&row);
+  for (const Table2Row& row : table2_finer)
+    if (is_chosen(options, row)) lengths.push_back(&row);
+  std::vector<Job> jobs; // all scenes are read before the first run
+  for (const Table2Row* row : lengths)
+    for (const std::string_view rates : {"one", "two"})
+      if (options.rates == "both" || options.rates == rates)
+        jobs.push_back({row, rates, scene_of(options, *row, rates)});
   TextOutput csv(options.output + ".csv", options.force);
   TextOutput table(options.output + ".md", options.force);
   const std::size_t threads =
       options.threads.value_or(static_cast<std::size_t>(omp_get_max_threads()));
 
   std::vector<Row> rows;
-  for (std::size_t i = 0; i < chosen.size(); ++i) {
-    const double end = scenes[i].config.run.end_time;
+  for (const Job& job : jobs) {
+    const double end = job.scene.config.run.end_time;
     // The jets of the table are stationary after 35 ms.
     const double from = options.stationary_from.value_or(std::min(0.035, end / 2));
     const auto run = [&](std::size_t p) {
       std::optional<Progress> progress;
       if (!options.quiet) {
-        fmt::print(stderr, "L~ = {}{}, {} thread{}, {} s\n", chosen[i]->name,
-                   chosen[i]->length == 0 ? "" : " cm", p, p == 1 ? "" : "s", end);
+        fmt::print(stderr, "L~ = {}{}, {} rate{}, {} thread{}, {} s\n", job.row->name,
+                   job.row->length == 0 ? "" : " cm", job.rates,
+                   job.rates == "one" ? "" : "s", p, p == 1 ? "" : "s", end);
         progress.emplace(0.0, end);
       }
       const InterruptGuard interrupt;
-      return run_table2(scenes[i], end, from, p, {}, [&](const Simulation& s) {
+      return run_table2(job.scene, end, from, p, {}, [&](const Simulation& s) {
         if (progress) progress->show(s);
         if (const char* signal = InterruptGuard::signal_name())
           throw RunError(fmt::format("stopped by {}", signal));
       });
     };
-    Row row{.paper = chosen[i], .end_time = end, .serial = {}, .parallel = {}};
+    Row row{.paper = job.row,
+            .rates = job.rates,
+            .end_time = end,
+            .serial = {},
+            .parallel = {}};
     if (!options.no_serial && threads > 1) row.serial = run(1);
     row.parallel = run(threads);
     if (threads == 1) row.serial = row.parallel;
@@ -171,9 +232,12 @@ void add_bench_command(CLI::App& app) {
       "table2", "Cost against the refinement length, next to the paper's Table 2");
   std::vector<std::string> names;
   std::ranges::transform(table2, std::back_inserter(names), &Table2Row::name);
+  std::ranges::transform(table2_finer, std::back_inserter(names), &Table2Row::name);
   command
-      ->add_option("--rows", options->rows,
-                   "Rows, separated by commas: none,0.8,0.4,0.2 (L~ in cm); default: all")
+      ->add_option(
+          "--rows", options->rows,
+          "Rows, separated by commas: none,0.8,0.4,0.2 (L~ in cm), all by default, and "
+          "0.1,0.05,0.02, which take long with one rate")
       ->delimiter(',')
       ->check(CLI::IsMember(names));
   command
@@ -181,7 +245,13 @@ void add_bench_command(CLI::App& app) {
       ->type_name("T");
   command->add_option("--rtol", options->rtol, "Tolerance of the integrator");
   command->add_option("--solver", options->solver, "Coulomb solver");
-  command->add_option("--method", options->method, "Integrator");
+  command->add_option("--method", options->method, "Integrator of the runs with one rate");
+  command
+      ->add_option(
+          "--rates", options->rates,
+          "Runs with one rate, with two (integrator.method = \"two-rate\"), or both")
+      ->check(CLI::IsMember({"one", "two", "both"}))
+      ->capture_default_str();
   add_set_option(*command, options->overrides,
                  "Override a key of all scenes: table.key=value (repeatable)");
   add_threads_option(*command, options->threads);

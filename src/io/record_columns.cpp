@@ -129,8 +129,7 @@ std::vector<RecordColumn<JetSnapshot>> observable_columns() {
              s.statistics.two_rates.value_or(TwoRateRecord{}).inner_evaluations);
        }},
       {{"full_sums", "1",
-        "Coulomb sums of steps with two rates, everything included, over all pairs of the "
-        "jet"},
+        "Coulomb sums so far, everything included: pairs over all pairs of the jet"},
        [](const auto& s) {
          return s.statistics.two_rates.value_or(TwoRateRecord{}).full_sums;
        }}};

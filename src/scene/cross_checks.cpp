@@ -141,11 +141,11 @@ void settle_step(IntegratorConfig& i, const SceneText& text) {
                     "or fixed. Remove one",
                     *i.rtol, *i.step));
   if (i.step && method.kind == MethodKind::chooses)
-    text.fail(
-        "integrator.step",
-        fmt::format("integrator.step = {} s and {}: it chooses the steps and methods that a "
-                    "tolerance allows. Name another method, or give integrator.rtol instead",
-                    *i.step, method_is));
+    text.fail("integrator.step",
+              fmt::format(
+                  "integrator.step = {} s and {}: it chooses the steps and methods that a "
+                  "tolerance allows. Name another method, or give integrator.rtol instead",
+                  *i.step, method_is));
   if (i.rtol && !has_error_estimate)
     text.fail(
         "integrator.rtol",
@@ -198,23 +198,28 @@ void check_two_rates(const SceneConfig& c, const SceneText& text) {
                         : !c.coulomb ? "[coulomb], whose sums it saves"
                                      : nullptr;
   if (named && missing != nullptr)
-    refuse("method", fmt::format("integrator.method = \"two-rate\" needs {}. Take \"auto\" (the "
-                                 "default)",
-                                 missing));
+    refuse("method",
+           fmt::format("integrator.method = \"two-rate\" needs {}. Take \"auto\" (the "
+                       "default)",
+                       missing));
   if (named && i.events == EventPlacement::step_end)
-    refuse("events", "integrator.events = \"step-end\" and integrator.method = \"two-rate\": "
-                     "beads are born within its steps. Take \"located\" (the default)");
+    refuse("events",
+           "integrator.events = \"step-end\" and integrator.method = \"two-rate\": "
+           "beads are born within its steps. Take \"located\" (the default)");
   if (named && i.landings == LandingSteps::located)
-    refuse("landings", "integrator.landings = \"located\" and integrator.method = \"two-rate\": "
-                       "beads land within its steps. Take \"auto\" (the default)");
+    refuse("landings",
+           "integrator.landings = \"located\" and integrator.method = \"two-rate\": "
+           "beads land within its steps. Take \"auto\" (the default)");
   const bool may = (named || i.method == "auto") && missing == nullptr;
   for (const auto& [key, given] : {std::pair{"inner_beads", i.inner_beads.has_value()},
                                    {"downstream_rtol", i.downstream_rtol.has_value()}})
     if (given && !may)
-      refuse(key, fmt::format("integrator.{} is about two rates, which this scene cannot have: they "
-                              "need [nozzle], [coulomb] and integrator.method = \"two-rate\" or "
-                              "\"auto\". Remove it",
-                              key));
+      refuse(key,
+             fmt::format(
+                 "integrator.{} is about two rates, which this scene cannot have: they "
+                 "need [nozzle], [coulomb] and integrator.method = \"two-rate\" or "
+                 "\"auto\". Remove it",
+                 key));
 }
 
 template <class Refuse>

@@ -1,6 +1,7 @@
 #include "ehdjet/simulation/build.hpp"
 
 #include "ehdjet/budget/balance.hpp"
+#include "ehdjet/core/error.hpp"
 #include "ehdjet/coulomb/make_solver.hpp"
 #include "ehdjet/events/insertion.hpp"
 #include "ehdjet/events/landing.hpp"
@@ -305,6 +306,10 @@ std::unique_ptr<Simulation> build_simulation(const Scene& scene, Extras extras) 
                     .longest = c.integrator.max_step.value_or(StepLimits{}.longest),
                     .shortest = c.integrator.min_step,
                     .shortest_link = shortest_link(scene)};
+  if (c.integrator.method == "two-rate" && !extras.forces.empty())
+    throw InputError(
+        "integrator.method = \"two-rate\" cannot be used with force terms that a "
+        "program adds: they may couple beads that are far apart. Take \"auto\"");
   std::unique_ptr<TwoRate> two_rate;
   if (may_use_two_rates(c, extras))
     two_rate = build_two_rate(scene, *dynamics, inflow, table, limits);

@@ -461,12 +461,11 @@ void TwoRate::chain_changed(const JetState& jet, bool only_end) {
 }
 
 void TwoRate::count(RunStatistics& statistics) const {
-  const std::uint64_t downstream = parts_.downstream->evaluations();
-  statistics.evaluations += downstream;
+  statistics.evaluations += parts_.downstream->evaluations();
   TwoRateRecord& record = *statistics.two_rates;
   record.steps = macro_steps_, record.inner_beads = inner_beads_;
   record.inner_evaluations = inner_evaluations_;
-  record.full_sums = static_cast<double>(downstream) + full_sums_;
+  record.full_sums = static_cast<double>(statistics.evaluations) + full_sums_;
 }
 
 void TwoRate::archive(const Archive& a) {

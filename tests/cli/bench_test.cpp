@@ -21,10 +21,23 @@ TEST(BenchTable2, writes_its_rows_next_to_the_paper_s) {
   EXPECT_EQ(o.exit_code, 0) << o.err;
   EXPECT_THAT(o.out, AllOf(HasSubstr("8787"), HasSubstr("12718"), HasSubstr("t.csv")));
   const std::string csv = text_of(folder / "t.csv");
-  EXPECT_THAT(csv, AllOf(HasSubstr("refinement_length_cm,simulated_s,beads_mean"),
-                         HasSubstr("\n0.8,0.003,"), HasSubstr(",150,24,8787,0.26\n")));
-  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 3);
+  EXPECT_THAT(csv, AllOf(HasSubstr("refinement_length_cm,rates,simulated_s,beads_mean"),
+                         HasSubstr("\n0.8,1,0.003,"), HasSubstr("\n0.8,2,0.003,"),
+                         HasSubstr(",150,24,8787,0.26\n")));
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 5);
   EXPECT_THAT(text_of(folder / "t.md"), HasSubstr("| 0.8 |"));
+}
+
+TEST(BenchTable2, goes_to_finer_meshes_than_the_paper_and_states_the_growth) {
+  const Folder folder;
+  const Outcome o = command(
+      folder,
+      table2 + "--rows 0.2,0.1 --rates two --time 4e-3 --threads 1 --rtol 1e-4 -o t");
+  EXPECT_EQ(o.exit_code, 0) << o.err;
+  EXPECT_THAT(text_of(folder / "t.csv"),
+              AllOf(HasSubstr("\n0.2,2,"), HasSubstr("\n0.1,2,"), HasSubstr(",,,\n")));
+  EXPECT_THAT(o.out, HasSubstr("grows with the beads to the power"));
+  EXPECT_EQ(command(folder, table2 + "--rates three").exit_code, 2);
 }
 
 TEST(BenchTable2, refuses_what_it_does_not_know_and_overwrites_nothing) {

@@ -64,7 +64,7 @@ struct TwoRateRecord {
   std::uint64_t steps = 0;             ///< macro steps
   std::uint64_t inner_evaluations = 0; ///< of the right-hand side of the inner beads
   std::uint64_t inner_beads = 0;       ///< how many there are now
-  /// Coulomb sums of those steps with everything included: pairs over all pairs of the chain.
+  /// Coulomb sums so far with everything included: pairs over all pairs of the chain.
   double full_sums = 0;
 };
 
