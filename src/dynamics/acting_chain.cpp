@@ -43,11 +43,9 @@ void ActingChain::bind(const JetState& jet, std::optional<double> absorbing_plan
   stage_.first = jet.first(), stage_.landed = landed_, stage_.moves = moves_;
 }
 
-// They are the end of the chain, as `Landing` makes sure of.
-const Stage& ActingChain::at_absorbed() {
-  const std::size_t begin = absorbed_.back();
-  for (std::size_t i = 0; i < absorbed_.size(); ++i)
-    charge_[absorbed_[i]] = charge_before_[i];
+const Stage& ActingChain::at_flying_on() {
+  const std::size_t begin = flying_on();
+  for (std::size_t i = 0; i < flying_on_; ++i) charge_[absorbed_[i]] = charge_before_[i];
   stage_.targets.begin = std::max(stage_.targets.begin, begin);
   stage_.sources.end = std::min(stage_.sources.end, begin);
   stage_.invalidate();
@@ -58,7 +56,7 @@ const Stage& ActingChain::at(double t, std::span<const double> y, BeadRange targ
                              BeadRange sources) {
   for (std::size_t i = 0; i < absorbed_.size(); ++i)
     charge_[absorbed_[i]] = charge_before_[i];
-  absorbed_.clear();
+  absorbed_.clear(), flying_on_ = 0;
   stage_.time = t, stage_.columns = {y, mass_.size()};
   stage_.targets = targets.within(mass_.size());
   stage_.sources = sources.within(mass_.size());
@@ -81,29 +79,36 @@ const Stage& ActingChain::at(double t, std::span<const double> y, BeadRange targ
 //     r - v (x - h)/v_x                                                         (model 5)
 //
 // To fly on with the velocity of the crossing is right to second order in the time since then,
-// which is less than a step. All beads but the last one of those that have passed have left the
-// chain and act on no other bead. On a grounded collector that one does not act either.
+// which is less than a step. All beads at the end of the chain but the last one of those that have
+// passed have left the chain and act on no other bead. On a grounded collector that one does not act
+// either. Within a long step beads may pass that have others behind them which have not; they wait.
 void ActingChain::absorb(std::span<const double> y) {
   const auto r = stage_.columns.position(), v = stage_.columns.velocity();
   const auto rests = [&](std::size_t k) { return support(k) == Support::collector; };
-  bool any = false;
+  bool any = false, at_end = true;
   for (std::size_t k = mass_.size(); k-- > stage_.first;) {
     if (!rests(k)) {
-      if (!(r.x[k] > *absorbing_plane_)) break;
+      if (!(r.x[k] > *absorbing_plane_)) {
+        if (!constraints_.led.passed_fly_on) break;
+        at_end = false;
+        continue;
+      }
       any = true;
     }
     absorbed_.push_back(k);
+    if (at_end) flying_on_ = absorbed_.size();
   }
   if (!any) {
-    absorbed_.clear();
+    absorbed_.clear(), flying_on_ = 0;
     return;
   }
   state_.assign(y.begin(), y.end());
   const Vec3View place = JetColumns<double>{state_, mass_.size()}.position();
   charge_before_.clear();
-  for (const std::size_t k : absorbed_) {
+  for (std::size_t i = 0; i < absorbed_.size(); ++i) {
+    const std::size_t k = absorbed_[i];
     charge_before_.push_back(charge_[k]);
-    if (k != absorbed_.back() || constraints_.grounded_collector) charge_[k] = 0;
+    if (i + 1 < flying_on_ || constraints_.grounded_collector) charge_[k] = 0;
     if (rests(k)) continue;
     const double late = v.x[k] > 0 ? (r.x[k] - *absorbing_plane_) / v.x[k] : 0.0;
     place.set(k, r[k] - late * v[k]);

@@ -77,15 +77,13 @@ void JetDynamics::prescribe(double t, std::span<double> y) const {
 std::size_t JetDynamics::judged_rows(std::span<const double> end) const {
   constexpr std::size_t kinked = 4; // beads above one that passes
   const std::size_t n = chain_.beads();
-  std::size_t judged = n;
-  if (!constraints().led.passed_fly_on || !chain_.absorbing_plane()) return judged;
-  for (std::size_t k = n; k-- > 0;) {
-    if (end[k] > *chain_.absorbing_plane())
-      judged = k < kinked ? 0 : k - kinked;
-    else if (chain_.support(k) != Support::collector)
-      break;
-  }
-  return judged;
+  if (!constraints().led.passed_fly_on || !chain_.absorbing_plane()) return n;
+  const auto x = end.first(n);
+  const auto passed = std::ranges::find_if(
+      x, [plane = *chain_.absorbing_plane()](double place) { return place > plane; });
+  if (passed == x.end()) return n;
+  const auto first = static_cast<std::size_t>(passed - x.begin());
+  return first < kinked ? 0 : first - kinked;
 }
 
 void JetDynamics::evaluate(double t, std::span<const double> y, std::span<double> rate,
@@ -101,9 +99,7 @@ void JetDynamics::evaluate(double t, std::span<const double> y, std::span<double
     std::fill(f + begin, f + end, 0.0);
   for (const auto& term : terms_) term->add_force(stage, force);
   for (ForceTerm* term : with_columns_) term->set_column_rates(stage, rates);
-  const bool any_absorbed = !chain_.absorbed().empty();
-  if (any_absorbed && constraints().led.passed_fly_on && chain_.absorbed().back() < end)
-    let_fly_on(force);
+  if (constraints().led.passed_fly_on && chain_.flying_on() < end) let_fly_on(force);
 
   for (std::size_t c = 0; c < 3; ++c) { // dr/dt = v
     const double* velocity = y.data() + (c + 3) * n;
@@ -117,13 +113,14 @@ void JetDynamics::evaluate(double t, std::span<const double> y, std::span<double
   // How beads that have passed fly on does not matter any more: they do so like the one before
   // them, because a jump of their own acceleration would only shorten the step.
   const auto absorbed = chain_.absorbed();
-  if (any_absorbed && !constraints().led.passed_fly_on && absorbed.back() > stage.first)
+  if (!absorbed.empty() && !constraints().led.passed_fly_on
+      && absorbed.back() > stage.first)
     for (const std::size_t k : absorbed) force.set(k, force[absorbed.back() - 1]);
   for (const std::size_t i : resting_) rate[i] = 0;
 }
 
 void JetDynamics::let_fly_on(Vec3View force) {
-  const Stage& stage = chain_.at_absorbed();
+  const Stage& stage = chain_.at_flying_on();
   for (std::size_t k = stage.targets.begin; k < stage.targets.end; ++k)
     force.set(k, Vec3::Zero());
   for (const auto& term : terms_) term->add_force(stage, force);

@@ -83,6 +83,7 @@ std::optional<double> Landing::locate(const DenseStep& step) {
   while (step.jet.is_landed(last)) --last;
   bool in_order = true; // from the end of the chain on, as the right-hand side assumes
   for (std::size_t i = 0; i < found.size(); ++i) in_order &= found[i].second + i == last;
+  in_order |= !step.keeps_chain(); // there the right-hand side assumes nothing
   if (!step.jet.absorbing_plane || !in_order) {
     located_ = step.jet.links() - found.front().second;
     return found.front().first;
@@ -163,6 +164,7 @@ std::vector<Landing::Arrival> Landing::arrivals(const JetState& jet) const {
         arrived.push_back(passed != passing_.end() ? *passed : arrival_now(jet, from_end));
       });
   std::ranges::reverse(arrived);
+  std::ranges::stable_sort(arrived, {}, &Arrival::time);
   return arrived;
 }
 

@@ -80,9 +80,14 @@ public:
   [[nodiscard]] const std::optional<double>& absorbing_plane() const {
     return absorbing_plane_;
   }
-  /// The stage of the absorbed beads alone, which have their own charges in it and feel those of the
-  /// other sources of the last stage. To be called after all that needs the last stage.
-  const Stage& at_absorbed();
+  /// The first bead of the part of the chain, up to its end, that the last stage has absorbed; the
+  /// number of beads if there is none.
+  [[nodiscard]] std::size_t flying_on() const {
+    return flying_on_ > 0 ? absorbed_[flying_on_ - 1] : beads();
+  }
+  /// The stage of that part alone. Its beads have their own charges in it and feel those of the other
+  /// sources of the last stage. To be called after all that needs the last stage.
+  const Stage& at_flying_on();
 
 private:
   void absorb(std::span<const double> y);
@@ -103,6 +108,7 @@ private:
   std::optional<double> absorbing_plane_; // [m]
   std::vector<std::size_t> absorbed_;
   std::vector<double> charge_before_; // of the absorbed beads
+  std::size_t flying_on_ = 0;         // how many of them are the end of the chain
   std::vector<double> state_;         // with absorbed beads where they crossed the plane
 };
 
