@@ -2,6 +2,7 @@
 
 #include "ehdjet/core/error.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace ehdjet::detail {
@@ -71,9 +72,10 @@ ExpansionTables::ExpansionTables(int p)
   EHDJET_EXPECTS(p >= 1 && p <= highest_order);
   fill_swap();
   for (int m = 0; m <= p; ++m)
-    for (int k = m; k <= p; ++k)
-      for (int l = m; l <= p; ++l)
-        push(multipole_to_local_, factorial(l + k) / (norm(k, m) * norm(l, m)));
+    for (int first = m; first <= p; first += 2)
+      for (int l = m; l < p; ++l)
+        for (int k = first; k <= std::min(first + 1, p); ++k)
+          push(multipole_to_local_, factorial(l + k) / (norm(k, m) * norm(l, m)));
   for (int m = 0; m <= p; ++m)
     for (int l = m; l <= p; ++l)
       for (int j = m; j <= l; ++j) push(shift_, norm(l, m) / norm(j, m) / factorial(l - j));
@@ -95,13 +97,18 @@ void ExpansionTables::fill_swap() {
   Exchange s(0);
   for (int l = 0; l <= order_; ++l) {
     if (l > 0) s = s.next();
-    for (int m = 0; m <= l; ++m) {
-      for (int n = (l - m) % 2; n <= l; n += 2)
-        push(swap_, n == 0 ? s.normalised(m, 0)
-                           : s.normalised(m, n) + parity(n) * s.normalised(m, -n));
-      for (int n = 1 + (l - m) % 2; m > 0 && n <= l; n += 2)
-        push(swap_, s.normalised(m, n) - parity(n) * s.normalised(m, -n));
-    }
+    const auto factor = [&](int m, int n, int part) {
+      if (n == 0) return s.normalised(m, 0);
+      const Real other = parity(n) * s.normalised(m, -n);
+      return part == 0 ? s.normalised(m, n) + other : s.normalised(m, n) - other;
+    };
+    for (int part = 0; part < 2; ++part)
+      for (int first = part; first <= part + 1; ++first)
+        for (int m = first, rows = 0; m <= l; m += 2 * rows) {
+          rows = rows_of_block((l - m) / 2 + 1);
+          for (int n = part + (l + first) % 2; n <= l; n += 2)
+            for (int r = 0; r < rows; ++r) push(swap_, factor(m + 2 * r, n, part));
+        }
   }
 }
 

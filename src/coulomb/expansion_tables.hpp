@@ -31,15 +31,23 @@ constexpr std::size_t real_part(int l, int m) {
 
 inline constexpr int highest_order = 22;
 
+/// The number of rows of a matrix that are multiplied together, if so many rows are left. Blocks
+/// have at most four rows, and no block has a single row if this can be avoided.
+constexpr int rows_of_block(int left) {
+  return left <= 4 ? left : left < 8 ? (left + 1) / 2 : 4;
+}
+
 /// Numbers of the operators that depend only on the order, in the sequence in which the kernels
 /// read them.
 struct ExpansionNumbers {
   int order;
-  /// Exchange of the x and z axes, an involution. For each l and m: the factors of Re c_l^n with n
-  /// of the parity of l-m, then those of Im c_l^n with n > 0 of the other parity.
+  /// Exchange of the x and z axes, an involution. For each l: the factors of Re c_l^n in Re c_l^m for
+  /// even m and those for odd m, with n of the parity of l-m, then those of Im c_l^n in Im c_l^m, with
+  /// n of the other parity. Successive m form blocks (`rows_of_block`). For each block and n there is
+  /// one factor per m of the block.
   const double* swap;
-  /// Multipole to local expansion along z. For each m, k >= m, l >= m:
-  /// (l+k)!/sqrt((k-m)!(k+m)!(l-m)!(l+m)!).
+  /// Multipole to local expansion along z. For each m, each pair of successive k >= m, m <= l < p and
+  /// both k:  (l+k)!/sqrt((k-m)!(k+m)!(l-m)!(l+m)!).
   const double* multipole_to_local;
   /// Shift along z. For each m, l >= m, j = m ... l:  sqrt((l-m)!(l+m)!/((j-m)!(j+m)!))/(l-j)!.
   const double* shift;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <utility>
 
 #include "kernels.hpp"
 #include "pair_tiles.hpp"
@@ -31,10 +32,11 @@ EHDJET_INLINE VectorOf<Simd> square_root(const VectorOf<Simd>& v) {
   return root;
 }
 
-/// The coefficients of one or two clusters per lane.
+/// The coefficients of one or two clusters per lane. The last line is not used. It keeps two sets
+/// from having the same addresses modulo 4096, for which loads would wait for stores.
 template <class Simd, int streams>
 struct Sets {
-  VectorOf<Simd> c[streams][most_coefficients];
+  VectorOf<Simd> c[most_coefficients + 1][streams];
 };
 
 template <class Simd>
@@ -56,7 +58,7 @@ EHDJET_INLINE void turn(int p, const Angles<Simd>& a, Sets<Simd, streams>& set) 
   for (int l = 1; l <= p; ++l)
     for (int m = 1; m <= l; ++m)
       for (int k = 0; k < streams; ++k) {
-        Vector &x = set.c[k][re(l, m)], &y = set.c[k][re(l, m) + 1];
+        Vector &x = set.c[re(l, m)][k], &y = set.c[re(l, m) + 1][k];
         const Vector c = a.c[m], s = sign > 0 ? a.s[m] : -a.s[m];
         const Vector turned = x * c + y * s;
         y = y * c - x * s;
@@ -64,23 +66,52 @@ EHDJET_INLINE void turn(int p, const Angles<Simd>& a, Sets<Simd, streams>& set) 
       }
 }
 
-/// Exchanges the x and z axes.
-template <class Simd, int streams>
-EHDJET_INLINE void exchange_axes(const ExpansionNumbers& tables,
-                                 const Sets<Simd, streams>& in, Sets<Simd, streams>& out) {
-  using Vector = VectorOf<Simd>;
-  const double* t = tables.swap;
-  for (int l = 0; l <= tables.order; ++l)
-    for (int m = 0; m <= l; ++m) {
-      const auto exchange = [&](int part) __attribute__((always_inline)) { // Re or Im
-        Vector sum[streams] = {};
-        for (int n = part + (l - m) % 2; n <= l; n += 2, ++t)
-          for (int k = 0; k < streams; ++k) sum[k] += *t * in.c[k][re(l, n) + part];
-        for (int k = 0; k < streams; ++k) out.c[k][re(l, m) + part] = sum[k];
-      };
-      exchange(0);
-      if (m > 0) exchange(1);
-    }
+/// Sums of a few rows of a matrix times one or more vectors x. All sums stay in registers, and each
+/// element of x is loaded only once.
+template <class Simd, int rows, int streams>
+struct Rows {
+  VectorOf<Simd> sum[rows][streams] = {};
+
+  EHDJET_INLINE void add(const double* column, const VectorOf<Simd>* x) {
+#pragma GCC unroll 4
+    for (int k = 0; k < streams; ++k)
+#pragma GCC unroll 4
+      for (int r = 0; r < rows; ++r) sum[r][k] += column[r] * x[k];
+  }
+};
+
+/// Exchanges the x and z axes in Re (part 0) or Im (1) of c_l^m, c_l^(m+2), ... The compiler knows the
+/// length of each loop. The loops are so short that their control would otherwise take longer than
+/// the arithmetic.
+template <class Simd, int streams, int l, int part, int m>
+EHDJET_INLINE void exchange_rows(const double*& t, const VectorOf<Simd> (*in)[streams],
+                                 VectorOf<Simd> (*out)[streams]) {
+  if constexpr (m <= l) {
+    constexpr int rows = rows_of_block((l - m) / 2 + 1);
+    Rows<Simd, rows, streams> block;
+    constexpr int first = part + (l + m) % 2, next = first == 0 ? 2 : first;
+    if constexpr (first == 0) block.add(t, in[re(l, 0)]), t += rows;
+    auto* x = in + re(l, next) + part;
+#pragma GCC unroll 1
+    for (int n = next; n <= l; n += 2, t += rows, x += 4) block.add(t, *x);
+#pragma GCC unroll 4
+    for (int r = 0; r < rows; ++r)
+#pragma GCC unroll 4
+      for (int k = 0; k < streams; ++k) out[re(l, m + 2 * r) + part][k] = block.sum[r][k];
+    exchange_rows<Simd, streams, l, part, m + 2 * rows>(t, in, out);
+  }
+}
+
+/// Exchanges the x and z axes, from degree l on.
+template <class Simd, int streams, int l = 0>
+void exchange_axes(const ExpansionNumbers& tables, const double* t,
+                   const VectorOf<Simd> (*in)[streams], VectorOf<Simd> (*out)[streams]) {
+  exchange_rows<Simd, streams, l, 0, 0>(t, in, out);
+  exchange_rows<Simd, streams, l, 0, 1>(t, in, out);
+  exchange_rows<Simd, streams, l, 1, 1>(t, in, out);
+  exchange_rows<Simd, streams, l, 1, 2>(t, in, out);
+  if constexpr (l < highest_order)
+    if (l < tables.order) exchange_axes<Simd, streams, l + 1>(tables, t, in, out);
 }
 
 /// Turns the axes so that d points along z, and back.
@@ -111,35 +142,84 @@ struct Alignment {
   EHDJET_INLINE void align(const ExpansionNumbers& t, Sets<Simd, streams>& set,
                            Sets<Simd, streams>& scratch) const {
     turn<Simd, streams, 1>(t.order, azimuth, set);
-    exchange_axes(t, set, scratch);
+    exchange_axes<Simd, streams>(t, t.swap, set.c, scratch.c);
     turn<Simd, streams, 1>(t.order, polar, scratch);
-    exchange_axes(t, scratch, set);
+    exchange_axes<Simd, streams>(t, t.swap, scratch.c, set.c);
   }
   template <int streams>
   EHDJET_INLINE void restore(const ExpansionNumbers& t, Sets<Simd, streams>& set,
                              Sets<Simd, streams>& scratch) const {
-    exchange_axes(t, set, scratch);
+    exchange_axes<Simd, streams>(t, t.swap, set.c, scratch.c);
     turn<Simd, streams, -1>(t.order, polar, scratch);
-    exchange_axes(t, scratch, set);
+    exchange_axes<Simd, streams>(t, t.swap, scratch.c, set.c);
     turn<Simd, streams, -1>(t.order, azimuth, set);
   }
 };
 
+/// Every other block of `step` lanes of a and b: the first ones, or those that remain (`second`).
+template <int step, bool second, class Vector, int... lane>
+EHDJET_INLINE Vector every_other(const Vector& a, const Vector& b,
+                                 std::integer_sequence<int, lane...> /*lanes*/) {
+  constexpr int lanes = sizeof...(lane);
+  return __builtin_shufflevector(
+      a, b, (lane + (second ? step : 0) + ((lane & step) != 0 ? lanes - step : 0))...);
+}
+
+/// Transposes a matrix of `lanes` rows, from blocks of one element to blocks of half the size.
+template <class Simd, int step = 1>
+EHDJET_INLINE void transpose(VectorOf<Simd>* v) {
+  using Vector = VectorOf<Simd>;
+  constexpr std::make_integer_sequence<int, Simd::lanes> lanes;
+  if constexpr (step < Simd::lanes) {
+#pragma GCC unroll 8
+    for (int i = 0; i < Simd::lanes; ++i) {
+      if ((i & step) != 0) continue;
+      const Vector a = v[i], b = v[i + step];
+      v[i] = every_other<step, false>(a, b, lanes);
+      v[i + step] = every_other<step, true>(a, b, lanes);
+    }
+    transpose<Simd, 2 * step>(v);
+  }
+}
+
+/// Successive coefficients of a cluster become the same lane of successive vectors.
 template <class Simd, int streams>
 EHDJET_INLINE void gather(int n, const ExpansionKernel::Batch& b,
                           Sets<Simd, streams>& set) {
-  for (int k = 0; k < streams; ++k)
-    for (int i = 0; i < n; ++i)
-      for (int lane = 0; lane < Simd::lanes; ++lane) set.c[k][i][lane] = b.from[k][lane][i];
+  using Vector = VectorOf<Simd>;
+  for (int i = 0; i < n; i += Simd::lanes)
+    for (int k = 0; k < streams; ++k) {
+      Vector v[Simd::lanes];
+#pragma GCC unroll 8
+      for (int lane = 0; lane < Simd::lanes; ++lane)
+        __builtin_memcpy(&v[lane], b.from[k][lane] + i, sizeof(Vector));
+      transpose<Simd>(v);
+#pragma GCC unroll 8
+      for (int j = 0; j < Simd::lanes; ++j) set.c[i + j][k] = v[j];
+    }
 }
 
 /// The lanes are added one after the other, because a cluster may occur several times in a batch.
-template <class Simd>
-EHDJET_INLINE void scatter(int n, const VectorOf<Simd>* set, double* const* to) {
-  for (int lane = 0; lane < Simd::lanes; ++lane) {
-    double* out = to[lane];
-    for (int i = 0; i < n; ++i) out[i] += set[i][lane];
-  }
+template <class Simd, int streams>
+EHDJET_INLINE void scatter(int n, Sets<Simd, streams>& set,
+                           const ExpansionKernel::Batch& b) {
+  using Vector = VectorOf<Simd>;
+  for (int i = n; i % Simd::lanes != 0; ++i) // padding
+    for (int k = 0; k < streams; ++k) set.c[i][k] = Vector{};
+  for (int i = 0; i < n; i += Simd::lanes)
+    for (int k = 0; k < streams; ++k) {
+      Vector v[Simd::lanes];
+#pragma GCC unroll 8
+      for (int j = 0; j < Simd::lanes; ++j) v[j] = set.c[i + j][k];
+      transpose<Simd>(v);
+#pragma GCC unroll 8
+      for (int lane = 0; lane < Simd::lanes; ++lane) {
+        Vector sum;
+        __builtin_memcpy(&sum, b.to[k][lane] + i, sizeof(Vector));
+        sum += v[lane];
+        __builtin_memcpy(b.to[k][lane] + i, &sum, sizeof(Vector));
+      }
+    }
 }
 
 /// Along z, at distance d:  L_k^m = (-1)^m/d^(k+1) sum_(l<p) (-1)^k/d^l u_kl^m M_l^m,  where u is
@@ -168,33 +248,39 @@ void multipoles_to_locals(const ExpansionNumbers& t, const ExpansionKernel::Batc
   for (int l = 1; l <= p; ++l) scale[l] = scale[l - 1] * inverse;
   for (int l = 0; l <= p; ++l)
     for (int i = l * l; i < (l + 1) * (l + 1); ++i) {
-      a.c[0][i] *= scale[l];
-      a.c[1][i] *= l % 2 == 0 ? scale[l] : -scale[l];
+      a.c[i][0] *= scale[l];
+      a.c[i][1] *= l % 2 == 0 ? scale[l] : -scale[l];
     }
   const double* u = t.multipole_to_local;
-  for (int m = 0; m <= p; ++m)
-    for (int k = m; k <= p; ++k) {
-      Vector real[2] = {}, imaginary[2] = {};
-      for (int l = m; l <= p; ++l, ++u) {
-        if (l == p) continue; // see above
-        const int i = re(l, m);
-        for (int side = 0; side < 2; ++side) {
-          real[side] += *u * a.c[side][i];
-          if (m > 0) imaginary[side] += *u * a.c[side][i + 1];
-        }
-      }
-      const Vector plus = scale[k] * inverse;
-      const Vector first = (k + m) % 2 == 0 ? plus : -plus; // of the first cluster's field
+  const auto along_z = [&]<int rows, int parts>(int k, int m)
+      __attribute__((always_inline)) {
+    Rows<Simd, rows, 2 * parts> block; // Re and Im are adjacent
+    for (int l = m, i = re(m, m); l < p; i += 2 * l + 1, ++l, u += rows)
+      block.add(u, a.c[i]); // i = re(l, m)
+#pragma GCC unroll 2
+    for (int r = 0; r < rows; ++r) {
+      const Vector plus = scale[k + r] * inverse;
+      const Vector first =
+          (k + r + m) % 2 == 0 ? plus : -plus; // of the first cluster's field
       const Vector second = m % 2 == 0 ? plus : -plus;
-      b.c[0][re(k, m)] = second * real[1], b.c[1][re(k, m)] = first * real[0];
-      if (m > 0) {
-        b.c[0][re(k, m) + 1] = second * imaginary[1];
-        b.c[1][re(k, m) + 1] = first * imaginary[0];
+#pragma GCC unroll 2
+      for (int part = 0; part < parts; ++part) {
+        b.c[re(k + r, m) + part][0] = second * block.sum[r][2 * part + 1];
+        b.c[re(k + r, m) + part][1] = first * block.sum[r][2 * part];
       }
     }
+  };
+  for (int m = 0; m <= p; ++m) {
+    int k = m;
+    for (; k < p; k += 2)
+      m == 0 ? along_z.template operator()<2, 1>(k, m)
+             : along_z.template operator()<2, 2>(k, m);
+    if (k == p)
+      m == 0 ? along_z.template operator()<1, 1>(k, m)
+             : along_z.template operator()<1, 2>(k, m);
+  }
   axes.restore(t, b, a);
-  scatter<Simd>(n, b.c[0], batch.to[0]);
-  scatter<Simd>(n, b.c[1], batch.to[1]);
+  scatter<Simd>(n, b, batch);
 }
 
 /// Along z: M'_l = sum_j s^(l-j) w_lj M_j for multipoles, L'_j = sum_l s^(l-j) w_lj L_l for local
@@ -212,7 +298,7 @@ void shift(const ExpansionNumbers& t, const ExpansionKernel::Batch& batch) {
   // For a multipole the shift is the vector from the new to the old centre, -d.
   const Vector s = multipoles ? -axes.length : axes.length;
   for (int l = 1; l <= p; ++l) power[l] = power[l - 1] * s;
-  for (int i = 0; i < n; ++i) b.c[0][i] = Vector{};
+  for (int i = 0; i < n; ++i) b.c[i][0] = Vector{};
   const double* w = t.shift;
   for (int m = 0; m <= p; ++m)
     for (int l = m; l <= p; ++l)
@@ -220,11 +306,11 @@ void shift(const ExpansionNumbers& t, const ExpansionKernel::Batch& batch) {
         const Vector factor = *w * power[l - j];
         const int to = multipoles ? re(l, m) : re(j, m),
                   from = multipoles ? re(j, m) : re(l, m);
-        b.c[0][to] += factor * a.c[0][from];
-        if (m > 0) b.c[0][to + 1] += factor * a.c[0][from + 1];
+        b.c[to][0] += factor * a.c[from][0];
+        if (m > 0) b.c[to + 1][0] += factor * a.c[from + 1][0];
       }
   axes.restore(t, b, a);
-  scatter<Simd>(n, b.c[0], batch.to[0]);
+  scatter<Simd>(n, b, batch);
 }
 
 /// R_l^m for l <= p, for one vector of charges.

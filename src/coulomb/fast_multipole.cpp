@@ -23,8 +23,8 @@ public:
 
   void reserve(const ClusterProblem& p, std::size_t threads) override {
     const std::size_t from = p.sources.clusters().size(), to = p.targets.clusters().size();
-    const std::size_t numbers = p.expansions.set * to * threads;
-    if (locals_.size() < numbers) locals_.resize(numbers);
+    const std::size_t lines = p.expansions.lines * to * threads;
+    if (locals_.size() < lines) locals_.resize(lines);
     // The length of the lists depends on the positions. The reserve is larger than for any jet, or
     // the number of all pairs. Memory that is never written costs nothing.
     const auto room = [](std::size_t a, std::size_t b) {
@@ -60,8 +60,8 @@ private:
 
   [[nodiscard]] double* local(const ClusterProblem& p, std::size_t thread,
                               std::size_t cluster) {
-    return locals_.data()
-           + p.expansions.set * (p.targets.clusters().size() * thread + cluster);
+    return locals_[p.expansions.lines * (p.targets.clusters().size() * thread + cluster)]
+        .value;
   }
 
   void plan(const ClusterProblem& p, std::size_t thread, std::size_t team) {
@@ -207,13 +207,14 @@ private:
   void gather_locals(const ClusterProblem& p, std::size_t team) {
     const auto clusters = p.targets.clusters();
     const std::size_t numbers = p.expansions.set * clusters.size();
+    double* sum = local(p, 0, 0);
     if (team > 1) {
 #pragma omp for schedule(static)
       for (std::size_t i = 0; i < numbers; ++i)
-        for (std::size_t t = 1; t < team; ++t) locals_[i] += locals_[i + t * numbers];
+        for (std::size_t t = 1; t < team; ++t) sum[i] += sum[i + t * numbers];
     }
     for (std::size_t level = 0; level + 1 < p.targets.levels().size(); ++level)
-      shift_level(p.expansions, p.targets, level, locals_.data(), Shift::downward);
+      shift_level(p.expansions, p.targets, level, sum, Shift::downward);
     const auto leaves = p.targets.leaves();
 #pragma omp for schedule(static)
     for (std::size_t i = 0; i < leaves.size(); ++i) {
@@ -234,7 +235,7 @@ private:
   std::vector<Pair> far_, near_; ///< of all threads; near pairs are sorted by target leaves
   std::vector<std::size_t> first_;
   std::vector<Sweep> sweeps_;
-  std::vector<double> locals_;
+  std::vector<CacheLine> locals_;
   bool met_coincident_ = false;
 };
 

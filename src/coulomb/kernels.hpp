@@ -21,8 +21,9 @@ struct ExpansionKernel {
 
   /// One pair of clusters per lane, and the vector from the first to the second centre.
   struct Batch {
-    const double* from[2][most_lanes]; ///< coefficients of the first and the second cluster
-    double* to[2][most_lanes];         ///< the results are added here
+    /// Coefficients of the first and the second cluster, with padding as in Expansions::set.
+    const double* from[2][most_lanes];
+    double* to[2][most_lanes]; ///< the results are added here
     double dx[most_lanes], dy[most_lanes], dz[most_lanes];
   };
 

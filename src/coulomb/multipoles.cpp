@@ -7,8 +7,9 @@ namespace ehdjet::detail {
 
 // An unused lane reads zeros and writes to a set that is never read.
 ExpansionKernel::Batch idle_batch() {
-  static const std::array<double, coefficients(highest_order)> zero{};
-  thread_local std::array<double, coefficients(highest_order)> nowhere{};
+  alignas(64) static const std::array<double, coefficients(highest_order) + padding> zero{};
+  alignas(64) thread_local std::array<double, coefficients(highest_order) + padding>
+      nowhere{};
   ExpansionKernel::Batch batch{};
   for (std::size_t lane = 0; lane < ExpansionKernel::most_lanes; ++lane) {
     for (std::size_t side = 0; side < 2; ++side)
@@ -54,10 +55,10 @@ void Multipoles::gather(const ClusterTree& tree, const ChargeColumns& charges) {
     const Cluster& leaf = clusters[leaves[i]];
     expansions_.kernel.charges_to_multipole(expansions_.numbers, charges, leaf.begin,
                                             tree.end_of(leaf), leaf.centre,
-                                            sets_.data() + expansions_.set * leaves[i]);
+                                            sets_[expansions_.lines * leaves[i]].value);
   }
   for (std::size_t level = tree.levels().size() - 1; level-- > 0;)
-    shift_level(expansions_, tree, level, sets_.data(), Shift::upward);
+    shift_level(expansions_, tree, level, sets_.data()->value, Shift::upward);
 }
 
 // The power of degree l, sqrt(sum_m |M_l^m|^2), is at most Q r^l, which is reached by charges in two

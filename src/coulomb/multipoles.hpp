@@ -40,14 +40,15 @@ struct Expansions {
       : kernel(operators)
       , tables(order)
       , numbers(tables.numbers())
-      , set(coefficients(order)) {}
+      , lines((coefficients(order) + padding - 1) / padding)
+      , set(lines * padding) {}
   Expansions(const Expansions&) = delete; // `numbers` points into `tables`
   Expansions& operator=(const Expansions&) = delete;
 
   ExpansionKernel kernel;
   ExpansionTables tables;
   ExpansionNumbers numbers;
-  std::size_t set; ///< numbers per coefficient set
+  std::size_t lines, set; ///< cache lines and numbers per coefficient set, with padding
 };
 
 /// Upward: sets the multipoles of the clusters of one level from those of their children. Downward:
@@ -63,19 +64,19 @@ public:
   explicit Multipoles(const Expansions& expansions)
       : expansions_(expansions) {}
   void reserve(const ClusterTree& tree) {
-    const std::size_t numbers = expansions_.set * tree.clusters().size();
-    if (sets_.size() < numbers) sets_.resize(numbers);
+    const std::size_t lines = expansions_.lines * tree.clusters().size();
+    if (sets_.size() < lines) sets_.resize(lines);
   }
   void gather(const ClusterTree& tree, const ChargeColumns& charges);
   /// Sets Cluster::lumped: the error of the series relative to that of evenly spread charges.
   void weigh(ClusterTree& tree) const;
   [[nodiscard]] const double* operator[](std::size_t cluster) const {
-    return sets_.data() + expansions_.set * cluster;
+    return sets_[expansions_.lines * cluster].value;
   }
 
 private:
   const Expansions& expansions_;
-  std::vector<double> sets_;
+  std::vector<CacheLine> sets_;
 };
 
 } // namespace ehdjet::detail

@@ -17,6 +17,11 @@ inline constexpr int coordinate_exponent = 57;
 inline constexpr double padding_distance = 0x1p58;
 inline constexpr std::size_t padding = 8; ///< the length of columns is a multiple of this
 
+/// The unit of memory of columns and of coefficient sets. Vectors that cross cache lines are slow.
+struct alignas(64) CacheLine {
+  double value[padding];
+};
+
 /// A pair is *close* if max(|dx|, |dy|, |dz|) < close_distance. This test has no rounding error. The
 /// kernels skip close pairs, for which r^2 might be subnormal in single precision, and set a flag.
 inline constexpr double close_distance = 0x1p-60;

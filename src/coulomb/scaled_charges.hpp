@@ -63,10 +63,6 @@ public:
   std::size_t add_close_pairs(Vec3View force, bool met_coincident = false);
 
 private:
-  struct alignas(64) CacheLine {
-    double value[8];
-  };
-  static_assert(sizeof(CacheLine) / sizeof(double) == padding);
   [[nodiscard]] double* column(std::size_t k) { return charges_[k * lines_].value; }
   [[nodiscard]] const double* column(std::size_t k) const {
     return charges_[k * lines_].value;
