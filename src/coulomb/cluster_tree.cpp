@@ -75,8 +75,7 @@ void ClusterTree::bound(const ChargeColumns& charges, const std::uint8_t* moves)
     const std::size_t begin = levels_[level], end = levels_[level + 1];
 #pragma omp parallel for schedule(static) if (end - begin >= parallel_from_parents)
     for (std::size_t i = begin; i < end; ++i)
-      if (Cluster& c = clusters_[i]; !c.is_leaf())
-        bound_parent(clusters_[c.child], clusters_[c.child + 1], c);
+      if (Cluster& c = clusters_[i]; !c.is_leaf()) bound_parent(charges, c);
   }
 }
 
@@ -91,25 +90,39 @@ void ClusterTree::bound_leaf(const ChargeColumns& charges, const std::uint8_t* m
     leaf.low[k] = low * ExpansionKernel::unit, leaf.high[k] = high * ExpansionKernel::unit;
     leaf.centre[k] = (leaf.low[k] + leaf.high[k]) / 2;
   }
-  double square = 0;
+  set_axis(charges, leaf);
+  double square = 0, width = 0; // squared
   leaf.charge = leaf.square = leaf.moving = 0;
   for (std::size_t i = leaf.begin; i < end; ++i) {
-    double d2 = 0;
+    double d2 = 0, along = 0;
     for (int k = 0; k < 3; ++k) {
       const double d = columns[k][i] * ExpansionKernel::unit - leaf.centre[k];
-      d2 += d * d;
+      d2 += d * d, along += d * leaf.axis[k];
     }
     square = std::max(square, d2);
+    width = std::max(width, d2 - along * along);
     leaf.charge += std::abs(charges.q[i]);
     if (moves != nullptr && moves[i] == 0) continue;
     leaf.square += charges.q[i] * charges.q[i], ++leaf.moving;
   }
   if (leaf.moving > 0) leaf.square /= leaf.moving;
   if (moves == nullptr) leaf.moving = leaf.end - leaf.begin;
-  leaf.radius = std::sqrt(square);
+  leaf.radius = std::sqrt(square), leaf.width = std::sqrt(width);
 }
 
-void ClusterTree::bound_parent(const Cluster& a, const Cluster& b, Cluster& parent) {
+void ClusterTree::set_axis(const ChargeColumns& charges, Cluster& cluster) const {
+  const std::size_t first = cluster.begin, last = end_of(cluster) - 1;
+  const double* columns[3] = {charges.x, charges.y, charges.z};
+  double square = 0;
+  for (int k = 0; k < 3; ++k) {
+    cluster.axis[k] = (columns[k][last] - columns[k][first]) * ExpansionKernel::unit;
+    square += cluster.axis[k] * cluster.axis[k];
+  }
+  for (double& a : cluster.axis) a = square > 0 ? a / std::sqrt(square) : 0;
+}
+
+void ClusterTree::bound_parent(const ChargeColumns& charges, Cluster& parent) const {
+  const Cluster &a = clusters_[parent.child], &b = clusters_[parent.child + 1];
   for (int k = 0; k < 3; ++k) {
     parent.low[k] = std::min(a.low[k], b.low[k]);
     parent.high[k] = std::max(a.high[k], b.high[k]);
@@ -119,6 +132,19 @@ void ClusterTree::bound_parent(const Cluster& a, const Cluster& b, Cluster& pare
   for (const Cluster* c : {&a, &b})
     reach = std::max(reach, c->radius + between(parent.centre, c->centre).norm());
   parent.radius = std::min(reach, between(parent.low, parent.high).norm() / 2);
+  set_axis(charges, parent);
+  parent.width = 0;
+  for (const Cluster* c : {&a, &b}) {
+    double off = 0, along = 0, cosine = 0; // the child's centre and axis
+    for (int k = 0; k < 3; ++k) {
+      const double d = c->centre[k] - parent.centre[k];
+      off += d * d, along += d * parent.axis[k], cosine += c->axis[k] * parent.axis[k];
+    }
+    const double turned =
+        c->width + c->radius * std::sqrt(std::max(0.0, 1 - cosine * cosine));
+    parent.width = std::max(parent.width, std::sqrt(std::max(0.0, off - along * along))
+                                              + std::min(c->radius, turned));
+  }
   parent.charge = a.charge + b.charge;
   parent.moving = a.moving + b.moving;
   parent.square =

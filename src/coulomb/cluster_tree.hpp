@@ -16,10 +16,13 @@ struct Cluster {
   std::uint32_t child = 0;          ///< the first of two successive children; 0: a leaf
   double centre[3] = {}, radius = 0;
   double low[3] = {}, high[3] = {}; ///< box
-  double charge = 0;                ///< sum of |q|
-  double square = 0;                ///< mean of q^2 over the charges that move
-  double moving = 0;                ///< number of these charges, including padding
-  double lumped = 1;                ///< error of its series relative to a smooth cluster
+  /// Direction from the first to the last charge, and a bound for the distance of the charges from
+  /// the line in this direction through the centre. On a smooth curve small clusters are straight.
+  double axis[3] = {}, width = 0;
+  double charge = 0; ///< sum of |q|
+  double square = 0; ///< mean of q^2 over the charges that move
+  double moving = 0; ///< number of these charges, including padding
+  double lumped = 1; ///< error of its series relative to a smooth cluster
 
   [[nodiscard]] bool is_leaf() const { return child == 0; }
 };
@@ -58,7 +61,8 @@ public:
 private:
   void bound_leaf(const ChargeColumns& charges, const std::uint8_t* moves,
                   Cluster& leaf) const;
-  static void bound_parent(const Cluster& a, const Cluster& b, Cluster& parent);
+  void bound_parent(const ChargeColumns& charges, Cluster& parent) const;
+  void set_axis(const ChargeColumns& charges, Cluster& cluster) const;
 
   std::size_t begin_ = 0, n_ = 0, leaf_ = 0;
   std::vector<Cluster> clusters_;

@@ -33,17 +33,23 @@ void check(const SolverOptions& o) {
     refuse(fmt::format("leaf {}: must be a multiple of {}", *o.leaf, detail::padding));
 }
 
-/// The order and leaf size with the lowest cost for a tolerance (bench/coulomb_bench).
-ClusterParameters parameters(const SolverOptions& o, double extra_order,
+/// `order` and the leaf sizes are those with the lowest cost (bench/coulomb_bench).
+ClusterParameters parameters(const SolverOptions& o, int (*order)(double digits),
                              std::size_t coarse_leaf, std::size_t fine_leaf) {
   check(o);
   const double digits = -std::log10(o.tolerance);
-  const int order = static_cast<int>(std::lround(1.35 * digits + extra_order));
   return {.tolerance = o.tolerance,
           .norm = o.norm,
-          .order = o.order.value_or(std::clamp(order, 3, detail::highest_order)),
+          .order = o.order.value_or(std::clamp(order(digits), 3, detail::highest_order)),
           .leaf = o.leaf.value_or(digits < 7 ? coarse_leaf : fine_leaf),
           .opening = o.opening.value_or(ClusterParameters{}.opening)};
+}
+int order_of_treecode(double digits) {
+  return static_cast<int>(std::lround(1.35 * digits + 0.3));
+}
+/// Even orders, for which errors add up less (cluster_solver.cpp).
+int order_of_fast_multipole(double digits) {
+  return 2 * static_cast<int>(std::lround(0.5 * digits + 1.1));
 }
 
 constexpr SolverDescription known[] = {
@@ -51,13 +57,14 @@ constexpr SolverDescription known[] = {
      [](const SolverOptions& o) { return make_direct_sum(o.simd); }},
     {"treecode", "Barnes-Hut with multipoles, O(n log n), within a tolerance",
      [](const SolverOptions& o) {
-       return detail::make_cluster_solver(
-           detail::kernels_of(o.simd), parameters(o, 0.3, 64, 64), detail::make_treecode());
+       return detail::make_cluster_solver(detail::kernels_of(o.simd),
+                                          parameters(o, order_of_treecode, 64, 64),
+                                          detail::make_treecode());
      }},
     {"fmm", "fast multipole method, O(n), within a tolerance",
      [](const SolverOptions& o) {
        return detail::make_cluster_solver(detail::kernels_of(o.simd),
-                                          parameters(o, 0.6, 32, 64),
+                                          parameters(o, order_of_fast_multipole, 32, 48),
                                           detail::make_fast_multipole());
      }},
     {"auto", "direct or fmm, whichever is cheaper for the present charges",

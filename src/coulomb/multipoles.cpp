@@ -68,7 +68,9 @@ void Multipoles::gather(const ClusterTree& tree, const ChargeColumns& charges) {
 void Multipoles::weigh(ClusterTree& tree) const {
   constexpr double smooth = 0.4;
   const int p = expansions_.numbers.order;
-  const double most = p + 1; // the field of degree p is (p + 1) times its potential over r
+  // The field of degree p is (p + 1) times its potential over r. The larger share of even orders
+  // (cluster_solver.cpp) is not meant for such clusters.
+  const double most = (p % 2 == 0 ? 2 : 1) * (p + 1);
   const auto clusters = tree.clusters();
 #pragma omp for schedule(static)
   for (std::size_t k = 0; k < clusters.size(); ++k) {

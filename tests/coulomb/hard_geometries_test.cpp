@@ -258,7 +258,7 @@ TEST_P(Mat, beside_a_jet_leaves_the_tolerance_to_the_beads_that_fly) {
     EXPECT_LE(error(ToleranceNorm::moving, tolerance), tolerance) << tolerance;
   // Why there is such a norm; the treecode's criterion leaves more to spare.
   const double in_global = error(ToleranceNorm::global, 1e-5);
-  EXPECT_GT(in_global, GetParam() == std::string("fmm") ? 8e-5 : 4e-7);
+  EXPECT_GT(in_global, GetParam() == std::string("fmm") ? 4e-5 : 4e-7);
   EXPECT_GT(in_global, 8 * error(ToleranceNorm::moving, 1e-5));
 }
 

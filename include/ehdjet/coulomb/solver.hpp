@@ -24,8 +24,9 @@ enum class ToleranceNorm {
 };
 
 /// The error that a solver allows. It is 0 for the direct sum, which has only round-off errors. The
-/// errors of the other solvers are well below the tolerance on jets. On a ring, where the errors of
-/// all clusters have the same sign, they may reach twice the tolerance.
+/// errors of the other solvers are below the tolerance on jets, in the norm `moving` mostly a third
+/// to two thirds of it. On a ring, where the errors of all clusters have the same sign, they may
+/// reach twice the tolerance.
 struct CoulombAccuracy {
   double tolerance = 0; ///< [-]
   ToleranceNorm norm = ToleranceNorm::global;
