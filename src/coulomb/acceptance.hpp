@@ -40,12 +40,19 @@ struct Acceptance {
     if (!(target.radius + no_closer < opening * to_source)) return false;
     const double of_source = source.lumped * power(source.radius / to_target, order),
                  of_target = target.lumped * power(target.radius / to_source, order);
-    const double tail =
-        beside(source, path, d) * of_source + beside(target, path, d) * of_target;
-    if (per_bead) return tail <= allowed;
-    double force = source.charge * std::sqrt(target.square);
-    if (mutual) force = std::max(force, target.charge * std::sqrt(source.square));
-    return force * tail <= allowed * reach(d, std::min(to_target, to_source));
+    double force = 1, limit = allowed;
+    if (!per_bead) {
+      force = source.charge * std::sqrt(target.square);
+      if (mutual) force = std::max(force, target.charge * std::sqrt(source.square));
+      limit = allowed * reach(d, std::min(to_target, to_source));
+    }
+    // Most pairs are decided without the directions of the axes.
+    const double most = force * (of_source + of_target);
+    if (most <= limit) return true;
+    if (!(most * std::sqrt(beside_squared()) <= limit)) return false;
+    return force
+               * (beside(source, path, d) * of_source + beside(target, path, d) * of_target)
+           <= limit;
   }
 
 private:
@@ -53,17 +60,22 @@ private:
   /// series may contain.
   static constexpr double no_closer = 0x1p10 * close_distance * ExpansionKernel::unit;
 
-  /// The terms of degree p of a charge in the direction gamma are proportional to P_p(cos gamma), for
-  /// which Bernstein's bound is  |P_p| < sqrt(2/(pi (p + 1/2) sin gamma)).  The field beside a straight
-  /// cluster is therefore more accurate than the field on its axis. The charges that matter are in
-  /// the outer part of a cluster, where its width is seen at an angle of up to width/(0.8 radius).
+  /// The part of a tail that remains in the direction of `path`. The terms of degree p of a charge
+  /// in the direction gamma are proportional to P_p(cos gamma), for which Bernstein's bound is
+  /// |P_p| < sqrt(2/(pi (p + 1/2) sin gamma)).  The field beside a straight cluster is therefore more
+  /// accurate than on its axis. The charges that matter are in the outer part of a cluster, where
+  /// its width is seen at an angle of up to width/(0.8 radius).
   [[nodiscard]] double beside(const Cluster& c, const Displacement& path, double d) const {
     const double cosine =
         (c.axis[0] * path.x + c.axis[1] * path.y + c.axis[2] * path.z) / d;
     const double sine =
         std::sqrt(std::max(0.0, 1 - cosine * cosine)) - c.width / (0.8 * c.radius);
-    const double bound = 2 / (std::numbers::pi * (order + 0.5));
-    return sine > bound ? std::sqrt(bound / sine) : 1;
+    const double square = beside_squared();
+    return sine > square ? std::sqrt(square / sine) : 1;
+  }
+  /// Its least square, at right angles.
+  [[nodiscard]] double beside_squared() const {
+    return 2 / (std::numbers::pi * (order + 0.5));
   }
   /// Square of the distance at which a tail is compared with a force. The criterion is calibrated
   /// for the distance of the centres. The limit is twice the smallest possible distance of a

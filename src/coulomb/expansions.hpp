@@ -55,15 +55,16 @@ struct Angles { // cos(m gamma), sin(m gamma)
 template <class Simd, int streams, int sign>
 EHDJET_INLINE void turn(int p, const Angles<Simd>& a, Sets<Simd, streams>& set) {
   using Vector = VectorOf<Simd>;
-  for (int l = 1; l <= p; ++l)
-    for (int m = 1; m <= l; ++m)
+  for (int m = 1; m <= p; ++m) {
+    const Vector c = a.c[m], s = sign > 0 ? a.s[m] : -a.s[m];
+    for (int l = m, i = re(m, m); l <= p; i += 2 * l + 1, ++l) // i = re(l, m)
       for (int k = 0; k < streams; ++k) {
-        Vector &x = set.c[re(l, m)][k], &y = set.c[re(l, m) + 1][k];
-        const Vector c = a.c[m], s = sign > 0 ? a.s[m] : -a.s[m];
+        Vector &x = set.c[i][k], &y = set.c[i + 1][k];
         const Vector turned = x * c + y * s;
         y = y * c - x * s;
         x = turned;
       }
+  }
 }
 
 /// Sums of a few rows of a matrix times one or more vectors x. All sums stay in registers, and each
@@ -367,18 +368,15 @@ void charges_to_multipole(const ExpansionNumbers& t, const ChargeColumns& c,
   for (std::size_t i = begin; i < end; i += Simd::lanes) {
     Vector q = load<Simd>(c.q + i);
     auto [x, y, z] = Positions<Simd>(c, i, centre);
-    for (int lane = 0; lane < Simd::lanes; ++lane)
-      if (i + static_cast<std::size_t>(lane)
-          >= end) // padding, or charges of another cluster
-        q[lane] = x[lane] = y[lane] = z[lane] = 0;
+    if (i + Simd::lanes > end)
+      for (int lane = 0; lane < Simd::lanes; ++lane)
+        if (i + static_cast<std::size_t>(lane)
+            >= end) // padding, or charges of another cluster
+          q[lane] = x[lane] = y[lane] = z[lane] = 0;
     harmonics<Simd>(t, t.order, x, y, z, r);
     for (int k = 0; k < n; ++k) sum[k] += q * r[k];
   }
-  for (int k = 0; k < n; ++k) {
-    double total = 0;
-    for (int lane = 0; lane < Simd::lanes; ++lane) total += sum[k][lane];
-    multipole[k] = total;
-  }
+  for (int k = 0; k < n; ++k) multipole[k] = detail::sum<Simd>(sum[k]);
 }
 
 /// Adds  factor sum_k (gx, gy, gz)_k r_k  to the field of one vector of charges.
@@ -386,11 +384,16 @@ template <class Simd>
 EHDJET_INLINE void add_field(int n, const double* gx, const double* gy, const double* gz,
                              const VectorOf<Simd>* r, const VectorOf<Simd>& factor,
                              FieldColumns g, std::size_t i) {
-  VectorOf<Simd> x{}, y{}, z{};
-  for (int k = 0; k < n; ++k) x += gx[k] * r[k], y += gy[k] * r[k], z += gz[k] * r[k];
-  store<Simd>(g.x + i, load<Simd>(g.x + i) + factor * x);
-  store<Simd>(g.y + i, load<Simd>(g.y + i) + factor * y);
-  store<Simd>(g.z + i, load<Simd>(g.z + i) + factor * z);
+  // Two sums per component, because one would have to wait for its last term at each step.
+  VectorOf<Simd> x[2]{}, y[2]{}, z[2]{};
+  const auto add = [&](int sum, int k) __attribute__((always_inline)) {
+    x[sum] += gx[k] * r[k], y[sum] += gy[k] * r[k], z[sum] += gz[k] * r[k];
+  };
+  for (int k = 0; k + 1 < n; k += 2) add(0, k), add(1, k + 1);
+  if (n % 2 == 1) add(0, n - 1);
+  store<Simd>(g.x + i, load<Simd>(g.x + i) + factor * (x[0] + x[1]));
+  store<Simd>(g.y + i, load<Simd>(g.y + i) + factor * (y[0] + y[1]));
+  store<Simd>(g.z + i, load<Simd>(g.z + i) + factor * (z[0] + z[1]));
 }
 
 /// -gradient of sum conj(R_l^m) L_l^m, from the derivatives of the harmonics. Each component is a
@@ -492,9 +495,7 @@ double energy_in_multipole(const ExpansionNumbers& t, const ChargeColumns& c,
     for (int k = 0; k < re(p + 1, 0); ++k) potential += weighted[k] * r[k];
     sum += load<Simd>(c.q + i) * square_root<Simd>(inverse) * potential;
   }
-  double total = 0;
-  for (int lane = 0; lane < Simd::lanes; ++lane) total += sum[lane];
-  return total;
+  return detail::sum<Simd>(sum);
 }
 
 template <class Simd>

@@ -64,7 +64,7 @@ constexpr SolverDescription known[] = {
     {"fmm", "fast multipole method, O(n), within a tolerance",
      [](const SolverOptions& o) {
        return detail::make_cluster_solver(detail::kernels_of(o.simd),
-                                          parameters(o, order_of_fast_multipole, 32, 48),
+                                          parameters(o, order_of_fast_multipole, 40, 48),
                                           detail::make_fast_multipole());
      }},
     {"auto", "direct or fmm, whichever is cheaper for the present charges",
