@@ -63,13 +63,13 @@ void Multipoles::gather(const ClusterTree& tree, const ChargeColumns& charges) {
 
 // The power of degree l, sqrt(sum_m |M_l^m|^2), is at most Q r^l, which is reached by charges in two
 // places at the ends of the cluster. For a straight piece of a curve it is Q r^l/(l+1), for a ring a
-// third of Q r^l. The acceptance criterion is calibrated for these two. The larger share of even
-// orders (cluster_solver.cpp) is meant for smooth curves only. The last two degrees are used,
-// because every other degree of a symmetric cluster vanishes.
+// third of Q r^l. The acceptance criterion is calibrated for these two, with even orders for straight
+// pieces only, because of their larger share of the tolerance (cluster_solver.cpp). The last two
+// degrees are used, because every other degree of a symmetric cluster vanishes.
 void Multipoles::weigh(ClusterTree& tree) const {
   const int p = expansions_.numbers.order;
   const bool even = p % 2 == 0;
-  const double smooth = even ? 0.25 : 0.4;
+  const double smooth = even ? std::max(0.2, 1.0 / p) : 0.4;
   // The field of degree p is (p + 1) times its potential over r.
   const double most = (even ? 2 : 1) * (p + 1);
   const auto clusters = tree.clusters();
