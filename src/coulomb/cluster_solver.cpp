@@ -33,7 +33,7 @@ double margin_on_curves(std::size_t levels, int order) {
 }
 /// Charges that fill space have many more pairs. If a few charges move among many at rest, their net
 /// forces are small compared with the forces of the pairs.
-constexpr double margin_in_space = 0.4, margin_among_resting = 0.01;
+constexpr double margin_in_space = 0.8, margin_among_resting = 0.01;
 
 /// Root mean square of the net force on the targets that move. Errors are relative to it. Each force
 /// call estimates it again from the forces on a few groups of charges, with multipoles of low order,
