@@ -71,11 +71,7 @@ ExpansionTables::ExpansionTables(int p)
     : order_(p) {
   EHDJET_EXPECTS(p >= 1 && p <= highest_order);
   fill_swap();
-  for (int m = 0; m <= p; ++m)
-    for (int first = m; first <= p; first += 2)
-      for (int l = m; l < p; ++l)
-        for (int k = first; k <= std::min(first + 1, p); ++k)
-          push(multipole_to_local_, factorial(l + k) / (norm(k, m) * norm(l, m)));
+  fill_multipole_to_local();
   for (int m = 0; m <= p; ++m)
     for (int l = m; l <= p; ++l)
       for (int j = m; j <= l; ++j) push(shift_, norm(l, m) / norm(j, m) / factorial(l - j));
@@ -110,6 +106,14 @@ void ExpansionTables::fill_swap() {
             for (int r = 0; r < rows; ++r) push(swap_, factor(m + 2 * r, n, part));
         }
   }
+}
+
+void ExpansionTables::fill_multipole_to_local() {
+  for (int m = 0; m <= order_; ++m)
+    for (int first = m; first <= order_; first += 2)
+      for (int l = m; l < order_; ++l)
+        for (int k = first; k <= std::min(first + 1, order_); ++k)
+          push(multipole_to_local_, factorial(l + k) / (norm(k, m) * norm(l, m)));
 }
 
 ExpansionNumbers ExpansionTables::numbers() const {

@@ -41,13 +41,13 @@ constexpr int rows_of_block(int left) {
 /// read them.
 struct ExpansionNumbers {
   int order;
-  /// Exchange of the x and z axes, an involution. For each l: the factors of Re c_l^n in Re c_l^m for
-  /// even m and those for odd m, with n of the parity of l-m, then those of Im c_l^n in Im c_l^m, with
-  /// n of the other parity. Successive m form blocks (`rows_of_block`). For each block and n there is
-  /// one factor per m of the block.
+  /// Exchange of the x and z axes, an involution. For each l: the factors of Re c_l^n in Re c_l^m
+  /// for even m, then for odd m, with n of the parity of l-m. After these the factors of Im c_l^n in
+  /// Im c_l^m for odd m, then for even m, with n of the other parity. In each of the four, successive
+  /// m form blocks (`rows_of_block`). For each block and n there is one factor per m.
   const double* swap;
-  /// Multipole to local expansion along z. For each m, each pair of successive k >= m, m <= l < p and
-  /// both k:  (l+k)!/sqrt((k-m)!(k+m)!(l-m)!(l+m)!).
+  /// Multipole to local expansion along z. For each m, two successive k >= m, l = m ... p-1 and each
+  /// of the two k:  (l+k)!/sqrt((k-m)!(k+m)!(l-m)!(l+m)!).
   const double* multipole_to_local;
   /// Shift along z. For each m, l >= m, j = m ... l:  sqrt((l-m)!(l+m)!/((j-m)!(j+m)!))/(l-j)!.
   const double* shift;
@@ -68,6 +68,7 @@ public:
 
 private:
   void fill_swap();
+  void fill_multipole_to_local();
 
   int order_;
   std::vector<double> swap_, multipole_to_local_, shift_, upward_, diagonal_, gradient_;
