@@ -24,12 +24,15 @@ namespace {
 /// hence a number, that is larger by the factor 2^(1/(p+2)). The sum over the levels is a geometric
 /// series. Even orders get a larger share than odd ones. The multipole of degree p is the first that
 /// the expansions lack. On a smooth curve those of even degree act in opposite directions from both
-/// sides of a charge. With this share the error is below the tolerance on jets, mostly a third to two
-/// thirds of it, and below twice the tolerance on a ring, from 1e3 to 1e6 charges.
-double margin_on_curves(std::size_t levels, int order) {
+/// sides of a charge. This does not hold for orders too low for the tolerance, which need many more
+/// pairs. With this share the error is below the tolerance on jets, mostly a third to two thirds of
+/// it, and below twice the tolerance on a ring, from 1e3 to 1e6 charges.
+double margin_on_curves(std::size_t levels, const ClusterParameters& parameters) {
+  const int order = parameters.order;
   const double ratio = std::exp2(1.0 / (order + 2));
   const double pairs = (std::pow(ratio, static_cast<double>(levels)) - 1) / (ratio - 1);
-  return (order % 2 == 0 ? 8 : 5) / std::max(pairs, 8.0);
+  const bool more = order % 2 == 0 && order > -std::log10(parameters.tolerance);
+  return (more ? 8 : 5) / std::max(pairs, 8.0);
 }
 /// Charges that fill space have many more pairs. If a few charges move among many at rest, their net
 /// forces are small compared with the forces of the pairs.
@@ -245,7 +248,7 @@ private:
     const bool sorted = clusters_[0].sorted || (!mutual && clusters_[1].sorted);
     std::size_t levels = clusters_[0].tree.levels().size();
     if (!mutual) levels = std::max(levels, clusters_[1].tree.levels().size());
-    const double margin = !sorted ? margin_on_curves(levels - 1, parameters_.order)
+    const double margin = !sorted ? margin_on_curves(levels - 1, parameters_)
                           : charges_.moves() == nullptr ? margin_in_space
                                                         : margin_among_resting;
     double allowed = margin * strictness_ * parameters_.tolerance;
