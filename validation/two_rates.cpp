@@ -34,6 +34,8 @@ Scene jet(double length, const std::string& method, double tolerance) {
   Scene s = scene(length > 0 ? "table2_02" : "table2_none");
   if (length > 0) {
     s.config.refinement->length = length;
+    NozzleConfig& nozzle = *s.config.nozzle; // links that are cut are longer than those that are born
+    nozzle.link_length = std::min(nozzle.link_length, length / 2);
     s.config.refinement->remap = LinkRemap::conservative;
   }
   s.config.coulomb->solver = "auto", s.config.coulomb->tolerance = 1e-6;

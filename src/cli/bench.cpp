@@ -163,7 +163,9 @@ struct Job {
 Scene scene_of(const BenchOptions& options, const Table2Row& row, std::string_view rates) {
   std::vector<std::string> overrides = overrides_of(options);
   if (row.processors == 0)
-    overrides.push_back(fmt::format("refinement.length={}", row.length));
+    for (const auto& [key, value] : {std::pair{"refinement.length", row.length},
+                                     {"nozzle.link_length", std::min(2e-4, row.length / 2)}})
+      overrides.push_back(fmt::format("{}={}", key, value));
   if (rates == "two") overrides.emplace_back("integrator.method=\"two-rate\"");
   return read_scene(
       std::filesystem::path(options.scenes) / fmt::format("{}.toml", row.scene), overrides);
