@@ -509,6 +509,40 @@ def scaling(run: RunFolder):
     return with_legend_below(panel_row(run, (time_per_evaluation, memory), style.PAGE_WIDTH, 2.6), 3, one_label=False)
 
 
+# ---- two rates
+
+
+def against_beads(axes, run: RunFolder, column: str, ylabel: str) -> None:
+    """A quantity of the jets of all refinement lengths against the number of beads, with one rate and with two."""
+    table = run["two_rates"].positive("beads", column).required(column)
+    looks = {"dormand-prince": ("one rate", style.RED, "s"), "two-rate": ("two rates", style.BLUE, "o")}
+    for method, (label, color, marker) in looks.items():
+        rows = table.where(method=method).sorted_by("beads")
+        axes.plot(rows["beads"], rows[column], label=label, color=color, marker=marker)
+    log_log(axes, "number of beads", ylabel)
+
+
+def sums_of_two_rates(axes, run: RunFolder) -> None:
+    """Coulomb sums per millisecond."""
+    against_beads(axes, run, "full_sums_per_ms", "Coulomb sums per ms")
+
+
+def time_of_two_rates(axes, run: RunFolder) -> None:
+    """Wall time per millisecond."""
+    against_beads(axes, run, "seconds_per_ms_s", "wall time per ms (s)")
+
+
+def error_of_two_rates(axes, run: RunFolder) -> None:
+    """The worst bead."""
+    against_beads(axes, run, "error_m", "error of the worst bead (m)")
+
+
+def two_rates(run: RunFolder):
+    """What steps with two rates save, at which error."""
+    panels = (sums_of_two_rates, time_of_two_rates, error_of_two_rates)
+    return with_legend_below(panel_row(run, panels, style.PAGE_WIDTH, 2.4), 2)
+
+
 # ---- physics
 
 
@@ -567,6 +601,7 @@ FIGURES = {
     "mesh": mesh,
     "snapshots": snapshots,
     "scaling": scaling,
+    "two_rates": two_rates,
     "physics": physics,
 }
 HEADLINES = {

@@ -51,11 +51,21 @@ SCHEMA = {
     "dispersion": ("solver", "wavelength_m tolerance growth_rate_per_s theory_per_s relative_error"),
     "energy": ("scene method solver", "rtol tolerance time_s residual"),
     "table2": (
-        "solver",
+        "solver method",
         "length_m threads rtol beads_mean beads_paper seconds_s seconds_paper evaluations rejected tip_m"
         " path_length_m deposit_mass_kg tip_error path_length_error deposit_mass_error",
     ),
     "table2_ideas": ("idea", "length_m evaluations rejected seconds_s tip_error"),
+    "two_rates": (
+        "method",
+        "length_m rtol beads evaluations_per_ms inner_evaluations_per_ms full_sums_per_ms seconds_per_ms_s error_m"
+        " tip_error path_length_error",
+    ),
+    "two_rates_stiff": (
+        "method",
+        "elastic_modulus_Pa viscosity_Pa_s evaluations_per_ms inner_evaluations_per_ms full_sums_per_ms"
+        " seconds_per_ms_s error_m",
+    ),
     "scaling": (
         "source solver",
         "beads tolerance threads steps seconds_s seconds_per_evaluation_s evaluations time_per_ms_s"

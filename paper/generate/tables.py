@@ -44,25 +44,32 @@ def table2_rows(run: RunFolder) -> Table:
         table = table.where(threads=max(table.values_of("threads")))
     lengths = table["length_m"]
     coarsest_first = np.where(lengths > 0, -lengths, -np.inf)
-    order = np.lexsort((table["threads"], -table["rtol"], table["solver"].astype(str), coarsest_first))
+    order = np.lexsort((table["threads"], table["method"].astype(str), -table["rtol"],
+                        table["solver"].astype(str), coarsest_first))
     return Table(table.name, {name: cells[order] for name, cells in table.columns.items()}, table.comments)
 
 
 def table2(run: RunFolder) -> str:
     """Table 2 side by side with the paper."""
     table = table2_rows(run)
-    heads = [r"$\tilde l$", "solver", "rtol", "threads", r"$\langle n\rangle$", r"$n$ \cite{lauricella2016}",
+    heads = [r"$\tilde l$", "solver", "rates", "rtol", "threads", r"$\langle n\rangle$", r"$n$ \cite{lauricella2016}",
              "time (s)", r"time \cite{lauricella2016} (s)", "gain", "evaluations", "tip", "path", "deposit"]
     rows = []
     for i in range(len(table)):
         row = {name: cells[i] for name, cells in table.columns.items()}
         rows.append([
-            style.length_name(row["length_m"]), tex.text(style.solver_name(row["solver"])), tex.power(row["rtol"]),
+            style.length_name(row["length_m"]), tex.text(style.solver_name(row["solver"])), rates(row),
+            tex.power(row["rtol"]),
             whole(row["threads"]), cell(row["beads_mean"], 4), whole(row["beads_paper"]),
             cell(row["seconds_s"], 3), whole(row["seconds_paper"]),
             cell(row["seconds_paper"] / row["seconds_s"], 2), whole(row["evaluations"]), cell(row["tip_error"]),
             cell(row["path_length_error"]), cell(row["deposit_mass_error"])])
-    return tabular("@{}llrrrrrrrrrrr@{}", heads, rows, length_changes(table))
+    return tabular("@{}llrrrrrrrrrrrr@{}", heads, rows, length_changes(table))
+
+
+def rates(row: dict) -> str:
+    """How many rates the steps of a row have."""
+    return "2" if row["method"] == "two-rate" else "1"
 
 
 def physics(run: RunFolder) -> str:
@@ -112,14 +119,15 @@ def readme_table2(run: RunFolder) -> str:
     about = [f"{key}: {answer}" for key in ("date", "processor", "simd", "commit")
              if (answer := table.comments.get(key))]
     lines = [
-        "| L~ | solver | threads | beads | beads, paper | time | time, paper (24 cores) | gain "
+        "| L~ | solver | rates | threads | beads | beads, paper | time | time, paper (24 cores) | gain "
         "| error of the path length |",
-        "|---|---|---|---|---|---|---|---|---|",
+        "|---|---|---|---|---|---|---|---|---|---|",
     ]
     for i in range(len(table)):
         row = {name: cells[i] for name, cells in table.columns.items()}
         lines.append("| " + " | ".join([
-            style.length_name(row["length_m"]), style.solver_name(row["solver"]), plain(row["threads"], "{:.0f}"),
+            style.length_name(row["length_m"]), style.solver_name(row["solver"]), rates(row),
+            plain(row["threads"], "{:.0f}"),
             plain(row["beads_mean"], "{:.1f}"), plain(row["beads_paper"], "{:.0f}"),
             plain(row["seconds_s"], "{:.3g} s"),
             plain(row["seconds_paper"], "{:,.0f} s"), plain(row["seconds_paper"] / row["seconds_s"], "{:,.0f}"),

@@ -525,6 +525,64 @@ for _key, _column in (("tip", "tip_error"), ("path", "path_length_error"), ("dep
     register_table2_error(_key, _column)
 
 
+# ---- two rates
+
+def of_method(run: RunFolder, method: str) -> Table:
+    """The rows of one method, from the coarsest mesh to the finest."""
+    table = run["two_rates"].where(method=method).positive("seconds_per_ms_s").required("two rates")
+    return table.sorted_by("beads")
+
+
+@value("two-rates/one-sums")
+def _(run):
+    sums = of_method(run, "dormand-prince")["full_sums_per_ms"]
+    return tex.number(sums.min()) + " to " + tex.number(sums.max())
+
+
+@value("two-rates/two-sums")
+def _(run):
+    rows = of_method(run, "two-rate")
+    return tex.number(rows.keep(rows["length_m"] > 0)["full_sums_per_ms"][0])
+
+
+@value("two-rates/least-sums")
+def _(run):
+    return tex.number(of_method(run, "two-rate")["full_sums_per_ms"].min())
+
+
+@value("two-rates/error-ratio")
+def _(run):
+    one, two = (of_method(run, method) for method in ("dormand-prince", "two-rate"))
+    known = np.isfinite(one["error_m"]) & np.isfinite(two["error_m"])
+    return tex.number((two["error_m"][known] / one["error_m"][known]).max())
+
+
+@value("two-rates/gain")
+def _(run):
+    one, two = (of_method(run, method).where(length_m=0.002) for method in ("dormand-prince", "two-rate"))
+    return tex.number((one["seconds_per_ms_s"] / two["seconds_per_ms_s"])[0])
+
+
+def register_two_rate_exponent(key: str, method: str) -> None:
+    """Growth of the time of a millisecond with the beads, for meshes of 0.2 cm and finer."""
+    @value(f"two-rates/exponent-{key}")
+    def _(run):
+        rows = of_method(run, method)
+        rows = rows.keep((rows["length_m"] > 0) & (rows["length_m"] <= 0.002))
+        return tex.number(queries.exponent(rows["beads"], rows["seconds_per_ms_s"]), 3)
+
+
+register_two_rate_exponent("one", "dormand-prince")
+register_two_rate_exponent("two", "two-rate")
+
+
+@value("two-rates/stiff-gain")
+def _(run):
+    table = run["two_rates_stiff"].where(elastic_modulus_Pa=5e5)
+    one, two = (table.where(method=method)["full_sums_per_ms"][0] for method in ("dormand-prince", "two-rate"))
+    return tex.number(one / two)
+
+
 def register_scaling(solver: str) -> None:
     """Cost and memory of the largest run with a solver, and the exponent of its cost."""
     def rows(run: RunFolder) -> Table:
