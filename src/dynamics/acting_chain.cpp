@@ -48,6 +48,7 @@ const Stage& ActingChain::at_flying_on() {
   for (std::size_t i = 0; i < flying_on_; ++i) charge_[absorbed_[i]] = charge_before_[i];
   stage_.targets.begin = std::max(stage_.targets.begin, begin);
   stage_.sources.end = std::min(stage_.sources.end, begin);
+  stage_.sources.begin = std::min(stage_.sources.begin, begin);
   stage_.invalidate();
   return stage_;
 }

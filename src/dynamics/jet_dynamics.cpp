@@ -89,7 +89,7 @@ std::size_t JetDynamics::judged_rows(std::span<const double> end) const {
 void JetDynamics::evaluate(double t, std::span<const double> y, std::span<double> rate,
                            BeadRange targets, BeadRange sources) {
   EHDJET_EXPECTS(y.size() == rate.size() && chain_.beads() > 0);
-  if (targets == targets_) ++evaluations_; // of all beads that it is about
+  if (targets == targets_) ++evaluations_; // partial ones do not count
   const Stage& stage = chain_.at(t, y, targets, sources);
   const std::size_t begin = stage.targets.begin, end = stage.targets.end;
   const std::size_t n = chain_.beads();
@@ -121,9 +121,13 @@ void JetDynamics::evaluate(double t, std::span<const double> y, std::span<double
 
 void JetDynamics::let_fly_on(Vec3View force) {
   const Stage& stage = chain_.at_flying_on();
+  const std::size_t n = chain_.beads();
+  own_force_.assign(3 * n, 0.0); // a term may also write to beads that are no targets
+  const std::span<double> all(own_force_);
+  const Vec3View own{all.subspan(0, n), all.subspan(n, n), all.subspan(2 * n, n)};
+  for (const auto& term : terms_) term->add_force(stage, own);
   for (std::size_t k = stage.targets.begin; k < stage.targets.end; ++k)
-    force.set(k, Vec3::Zero());
-  for (const auto& term : terms_) term->add_force(stage, force);
+    force.set(k, own[k]);
 }
 
 void JetDynamics::linearize(double t, std::span<const double> y) {

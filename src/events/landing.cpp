@@ -138,6 +138,10 @@ void Landing::list_inner_times(std::vector<double>& times) const {
 void Landing::apply(EventContext& context) {
   const auto arrived = arrivals(context.jet);
   const std::size_t end = context.jet.links();
+  const auto passed = [this](const Arrival& a) {
+    return std::ranges::find(passing_, a.from_end, &Arrival::from_end) != passing_.end();
+  };
+  only_passed_ = std::ranges::all_of(arrived, passed);
   located_.reset(), passing_.clear();
   for (const Arrival& a : arrived) {
     const std::size_t bead = end - a.from_end;

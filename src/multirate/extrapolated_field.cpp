@@ -65,10 +65,4 @@ void ExtrapolatedField::add_to_past(std::span<const double> field, std::size_t b
   beads_ = beads;
 }
 
-void ExtrapolatedField::archive(const Archive& a) {
-  a("beads", beads_), a("known", known_);
-  a("time_0", past_[0].time), a("time_1", past_[1].time);
-  a("field_0", past_[0].field), a("field_1", past_[1].field);
-}
-
 } // namespace ehdjet

@@ -54,18 +54,18 @@ void InnerRecord::end_step(double t, double theta) {
   step_ = nullptr;
 }
 
-void InnerRecord::before_event(const Event& event, const JetState& jet) {
-  Piece& last = pieces_[used_ - 1];
-  if (last.closing == nullptr) {
-    last.closing = &event;
-    return;
-  }
-  Piece& between = add_piece(); // two events at one instant
-  between.begin = between.end = jet.time;
-  between.chain = jet, between.ledger = *ledger_;
-  between.births = jet.beads() - beads_at_start_;
-  between.closing = &event;
-  for (auto& state : between.state) state = jet.y;
+void InnerRecord::before_event(const Event& event, const JetState& /*jet*/) {
+  pieces_[used_ - 1].closing = &event;
+}
+
+// Of no length: what the event has left is there also at the end of the macro step.
+void InnerRecord::after_event(const Event& /*event*/, const JetState& jet) {
+  Piece& piece = add_piece();
+  piece.begin = piece.end = jet.time;
+  piece.chain = jet, piece.ledger = *ledger_;
+  piece.births = jet.beads() - beads_at_start_;
+  piece.closing = nullptr;
+  for (auto& state : piece.state) state = jet.y;
 }
 
 const InnerRecord::Piece& InnerRecord::at(double t) const {
@@ -89,7 +89,8 @@ void InnerRecord::chain_at(const Piece& piece, double t, JetState& chain) const 
 double InnerRecord::value(double t, std::size_t column, std::size_t row) const {
   const Piece& piece = at(t);
   const auto weight = weights_at(place_in(piece, t));
-  const std::size_t i = column * piece.chain.beads() + row + piece.births;
+  const std::size_t shift = row > 0 ? piece.births : 0; // bead 0 keeps its number
+  const std::size_t i = column * piece.chain.beads() + row + shift;
   double value = 0;
   for (std::size_t s = 0; s < samples; ++s) value += weight[s] * piece.state[s][i];
   return value;

@@ -210,6 +210,12 @@ void check_two_rates(const SceneConfig& c, const SceneText& text) {
     refuse("landings",
            "integrator.landings = \"located\" and integrator.method = \"two-rate\": "
            "beads land within its steps. Take \"auto\" (the default)");
+  if (named && c.refinement && c.refinement->mesh == RefinedMesh::cut
+      && !c.refinement->interval)
+    refuse("method", "integrator.method = \"two-rate\" and refinement.mesh = \"cut\" need "
+                     "refinement.interval: without it links are cut at the ends of steps, "
+                     "and these steps are "
+                     "long");
   const bool may = (named || i.method == "auto") && missing == nullptr;
   for (const auto& [key, given] : {std::pair{"inner_beads", i.inner_beads.has_value()},
                                    {"downstream_rtol", i.downstream_rtol.has_value()}})

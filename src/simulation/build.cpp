@@ -229,12 +229,17 @@ std::unique_ptr<JetDynamics> compose_dynamics(const Scene& scene,
   return dynamics;
 }
 
+/// Links are cut at the end of the step in which they become too long, which must be a short one then.
+bool cuts_at_step_ends(const SceneConfig& c) {
+  return c.refinement && c.refinement->mesh == RefinedMesh::cut && !c.refinement->interval;
+}
+
 /// Whether a scene can be simulated with two rates, and its own method allows it.
 bool may_use_two_rates(const SceneConfig& c, const Extras& extras) {
   const IntegratorConfig& i = c.integrator;
   return (i.method == "auto" || i.method == "two-rate") && c.nozzle && c.coulomb && i.rtol
          && i.events == EventPlacement::located && i.landings == LandingSteps::automatic
-         && extras.forces.empty();
+         && extras.forces.empty() && !cuts_at_step_ends(c);
 }
 
 /// The inner beads as a simulation of their own, and the equations of motion of the others: the terms of
@@ -279,11 +284,12 @@ std::unique_ptr<TwoRate> build_two_rate(const Scene& scene, const JetDynamics& w
   parts.inward = make_coulomb_solver({.solver = "direct"});
   parts.outward = make_coulomb_solver({.solver = "direct"});
 
-  constexpr std::size_t default_inner_beads = 24, worth_it = 200;
-  TwoRate::Options options{.inner_beads =
-                               c.integrator.inner_beads.value_or(default_inner_beads),
-                           .adapts = !c.integrator.inner_beads,
-                           .fewest_beads = c.integrator.method == "auto" ? worth_it : 0};
+  constexpr std::size_t default_inner_beads = 24, possible = 64, worth_it = 200;
+  TwoRate::Options options{
+      .inner_beads = c.integrator.inner_beads.value_or(default_inner_beads),
+      .rtol = std::min(*c.integrator.rtol, scale.rtol),
+      .adapts = !c.integrator.inner_beads,
+      .fewest_beads = c.integrator.method == "auto" ? worth_it : possible};
   if (c.collector) options.collector = c.collector->distance;
   return std::make_unique<TwoRate>(std::move(parts), options);
 }

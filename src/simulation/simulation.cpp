@@ -204,6 +204,8 @@ void Simulation::run_until(double end_time) {
     const bool last =
         wanted >= (1 - 1e-9) * to_end; // leaves no remainder of round-off size
     cut |= last;
+    // How short the last step of a short run is says nothing about the next run.
+    uncut_ = last && limits_.even_at_end ? wanted : 0;
     advance(attempt_step(last ? to_end : wanted), end_time);
     statistics_.wall_time = wall_before + clock.seconds();
     if (jet_.time >= checkpoint_due_ && !cut) make_checkpoint();
@@ -257,15 +259,20 @@ void Simulation::archive(const Archive& a) {
   ehdjet::archive(a.part("jet"), jet_);
   ehdjet::archive(a.part("ledger"), ledger_);
   ehdjet::archive(a.part("statistics"), statistics_);
-  a("time", time_), a("step", step_), a("expected_event", expected_event_);
-  a("restart_step", restart_step_), a("after_event", after_event_);
-  control_.archive(a.part("step_size_control"));
-  integrator_->archive(a.part("integrator"));
+  a("time", time_);
+  archive_pace(a);
   dynamics_->archive(a.part("dynamics"));
   for (const auto& e : events_) e->archive(a.part(e->name()));
   if (!two_rate_) return;
   a("two_rates", two_rates_);
   two_rate_->archive(a.part("two_rate"));
+}
+
+void Simulation::archive_pace(const Archive& a) {
+  a("step", step_), a("expected_event", expected_event_);
+  a("restart_step", restart_step_), a("after_event", after_event_);
+  control_.archive(a.part("step_size_control"));
+  integrator_->archive(a.part("integrator"));
 }
 
 // The first step of the other kind is about as long as a step that is known to suit.
@@ -303,11 +310,12 @@ double Simulation::choose_step(double end_time) {
 // wanted, which the safety factor of the step size control allows for.
 double Simulation::even_macro_step(double h) const {
   constexpr double stretch = 1.08;
-  h = std::min(h, two_rate_->longest_step());
+  const double longest = std::min(limits_.longest, two_rate_->longest_step());
   double next = never;
   for (const auto& e : events_) next = std::min(next, e->next_time(jet_.time));
   const double remaining = next - jet_.time;
-  return std::isfinite(remaining) ? remaining / std::ceil(remaining / (stretch * h)) : h;
+  if (!std::isfinite(remaining)) return std::min(h, longest);
+  return remaining / std::ceil(remaining / std::min(stretch * h, longest) * (1 - 1e-9));
 }
 
 const Integrator& Simulation::stepping() const {
@@ -352,10 +360,11 @@ double Simulation::attempt_step(double h) {
     const bool exact = outcome.error <= 1; // false for a NaN
     const auto vanishing = exact ? vanishing_link() : std::nullopt;
     if (exact && !vanishing) {
-      step_ = control_.after_accepted(h, outcome.error);
+      step_ = std::max(control_.after_accepted(h, outcome.error), uncut_);
       break;
     }
     ++statistics_.rejected;
+    uncut_ = 0;
     const double next = exact ? h / 4 : control_.after_rejected(h, outcome.error);
     // A step that no longer changes t is as good as none.
     const double round_off = 4 * std::numeric_limits<double>::epsilon() * jet_.time;
@@ -473,7 +482,7 @@ void Simulation::show_until(const DenseStep& step, double end) {
 // the order.
 void Simulation::stop_at(const DenseStep& step, double theta) {
   if (two_rates_) {
-    if (theta > 0) {
+    if (step.time(theta) > step.t0) {
       (void)two_rate_->attempt(jet_, ledger_, theta * step.h);
       count_cost();
       commit();

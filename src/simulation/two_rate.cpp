@@ -169,9 +169,8 @@ bool TwoRate::suits(const JetState& jet, bool in_use) const {
                     fewest = std::max(options_.fewest_beads, 2 * inner_beads_);
   if (n < (in_use ? fewest - fewest / 4 : fewest)) return false;
   return jet.landed.empty()
-         || jet.landed.front().bead
-                >= std::min(n, inner_beads_ + buffer_beads
-                                   + near_beads(inner_beads_, parts_.scale.rtol));
+         || jet.landed.front().bead >= std::min(
+                n, inner_beads_ + buffer_beads + near_beads(inner_beads_, options_.rtol));
 }
 
 StepOutcome TwoRate::attempt(const JetState& jet, const Ledger& ledger, double h) {
@@ -184,9 +183,10 @@ StepOutcome TwoRate::attempt(const JetState& jet, const Ledger& ledger, double h
 
   const Simulation& inner = *parts_.inner;
   const std::uint64_t before = inner.dynamics().evaluations();
-  parts_.inner->run_until(jet.time + h);
+  const bool done = run_inner(jet.time + h);
   const std::uint64_t evaluations = inner.dynamics().evaluations() - before;
   inner_evaluations_ += evaluations;
+  if (!done) return {.error = std::nan("")};
   pairs_ += static_cast<double>(evaluations * (inner_beads_ + buffer_beads)
                                 * inner.jet().beads());
   project(jet, h);
@@ -199,8 +199,13 @@ StepOutcome TwoRate::attempt(const JetState& jet, const Ledger& ledger, double h
   parts_.integrator->restart();
   parts_.integrator->start_from_rate(start_rate_);
   StepOutcome outcome = parts_.integrator->attempt(*parts_.downstream, jet.time, h, jet.y);
-  if (outcome.error <= 1)
-    outcome.error = std::max(outcome.error, mismatch() / allowed_mismatch);
+  const double difference = mismatch() / allowed_mismatch;
+  mismatch_limits_ = !(difference <= outcome.error);
+  if (outcome.error <= 1) outcome.error = std::max(outcome.error, difference);
+  // Nobody would judge a step in which nearly all beads land.
+  if (parts_.downstream->judged_rows(parts_.integrator->end_state())
+      < inner_beads_ + buffer_beads)
+    outcome.error = std::nan("");
   const auto n = static_cast<double>(jet.beads());
   full_sums_ += std::exchange(pairs_, 0.0) / (n * n);
   return outcome;
@@ -251,7 +256,7 @@ void TwoRate::prepare_inner(const JetState& jet, const Ledger& ledger) {
       {.head = inner_beads_, .guide = parts_.record.get(), .passed_fly_on = true});
   downstream.bind(jet);
   const std::size_t free = inner_beads_ + buffer_beads;
-  distant_ = std::min(jet.beads(), free + near_beads(inner_beads_, parts_.scale.rtol));
+  distant_ = std::min(jet.beads(), free + near_beads(inner_beads_, options_.rtol));
   jet_ = &jet;
   parts_.predictor->start(jet, rate_, jerk_);
   parts_.predictor->lead(free, distant_ - free);
@@ -261,6 +266,23 @@ void TwoRate::prepare_inner(const JetState& jet, const Ledger& ledger) {
   if (!parts_.field->is_known()) learn_distant_field();
   field_before_.assign(1, *parts_.field);
   inner_ready_ = true;
+}
+
+/// False if the inner beads cannot go on so far. Then the places of the others are predicted too badly,
+/// and a shorter macro step may help.
+/// errors : what stopped them, if shorter steps did not help
+bool TwoRate::run_inner(double end) {
+  constexpr int most_failures = 5; // each time with a fifth of the step
+  try {
+    parts_.inner->run_until(end);
+    failures_ = 0;
+    return true;
+  } catch (const RunError&) {
+    if (++failures_ == most_failures) throw;
+    *parts_.field = field_before_.front();
+    inner_ready_ = false;
+    return false;
+  }
 }
 
 /// A shorter macro step: the micro steps that end before its end stay.
@@ -285,6 +307,9 @@ void TwoRate::learn_distant_field() {
   parts_.predictor->places(inner.time, distant_, places);
   charge_.assign(std::next(jet_->charge.begin(), static_cast<std::ptrdiff_t>(distant_)),
                  jet_->charge.end());
+  if (parts_.downstream->constraints().grounded_collector)
+    for (const LandedBead& b : jet_->landed)
+      if (b.bead >= distant_) charge_[b.bead - distant_] = 0;
   if (options_.collector) // who has passed it has left
     for (std::size_t i = 0; i < count; ++i)
       if (places.x[i] > *options_.collector) charge_[i] = 0;
@@ -359,6 +384,7 @@ void TwoRate::commit(JetState& jet, Ledger& ledger, RunStatistics& statistics) {
   const std::size_t n = jet.beads(), m = inner_beads_,
                     births = inner.jet().beads() - distant_;
   ++macro_steps_;
+  const std::size_t worst = parts_.integrator->worst_component() % n;
   JetState next;
   join(inner.jet(), m + births, jet, parts_.integrator->end_state(), m, next);
   next.time = start_ + h_;
@@ -378,7 +404,7 @@ void TwoRate::commit(JetState& jet, Ledger& ledger, RunStatistics& statistics) {
   rest_landed(next, jerk_);
   forget_distant(next, births);
   jet = std::move(next);
-  ready_ = !adapt(n, births), inner_ready_ = false;
+  ready_ = !adapt(worst, births), inner_ready_ = false;
 }
 
 /// The rates of the downstream beads without the inner ones, at the end of the step and with those
@@ -420,8 +446,7 @@ void TwoRate::carry_over(const JetState& jet, const JetState& next, std::size_t 
 /// The beads that have moved away from the nozzle by the births act by extrapolation from now on.
 void TwoRate::forget_distant(const JetState& next, std::size_t births) {
   const std::size_t free = inner_beads_ + buffer_beads, beads = next.beads(),
-                    first =
-                        std::min(beads, free + near_beads(inner_beads_, parts_.scale.rtol)),
+                    first = std::min(beads, free + near_beads(inner_beads_, options_.rtol)),
                     last = std::min(beads, first + births);
   if (!parts_.field->is_known()) return;
   buffer_.assign(3 * free, 0.0);
@@ -431,10 +456,9 @@ void TwoRate::forget_distant(const JetState& next, std::size_t births) {
 }
 
 /// m is right if beads far behind it limit the macro step. Returns whether it has changed.
-bool TwoRate::adapt(std::size_t beads, std::size_t births) {
+bool TwoRate::adapt(std::size_t worst, std::size_t births) {
   constexpr std::size_t window = 16, close = 3;
-  const std::size_t worst = parts_.integrator->worst_component() % beads;
-  if (worst < inner_beads_ + close) ++near_cut_;
+  if (mismatch_limits_ || worst < inner_beads_ + close) ++near_cut_;
   if (++steps_in_window_ < window && births + close < inner_beads_) return false;
   const bool too_few = 2 * near_cut_ > window || births + close >= inner_beads_;
   near_cut_ = steps_in_window_ = 0;
@@ -444,6 +468,7 @@ bool TwoRate::adapt(std::size_t beads, std::size_t births) {
 }
 
 void TwoRate::chain_changed(const JetState& jet, bool only_end) {
+  inner_ready_ = false;
   if (!only_end || !ready_) {
     ready_ = false;
     return;
@@ -461,7 +486,7 @@ void TwoRate::chain_changed(const JetState& jet, bool only_end) {
 }
 
 void TwoRate::count(RunStatistics& statistics) const {
-  statistics.evaluations += parts_.downstream->evaluations();
+  statistics.evaluations += downstream_evaluations();
   TwoRateRecord& record = *statistics.two_rates;
   record.steps = macro_steps_, record.inner_beads = inner_beads_;
   record.inner_evaluations = inner_evaluations_;
@@ -473,9 +498,11 @@ void TwoRate::archive(const Archive& a) {
   a("steps_in_window", steps_in_window_), a("macro_steps", macro_steps_);
   a("inner_evaluations", inner_evaluations_), a("full_sums", full_sums_),
       a("pairs", pairs_);
-  parts_.inner->archive(a.part("inner"));
+  std::uint64_t downstream = downstream_evaluations();
+  a("downstream_evaluations", downstream);
+  downstream_before_ = downstream - parts_.downstream->evaluations();
+  parts_.inner->archive_pace(a.part("inner"));
   parts_.integrator->archive(a.part("integrator"));
-  parts_.downstream->archive(a.part("downstream"));
   ready_ = inner_ready_ = false;
 }
 

@@ -37,8 +37,8 @@ public:
   void hold(HeldEnds ends);
   /// Beads that have landed act on no other bead.
   void ground_collector();
-  /// Only a part of the chain moves freely. Rates are those of this part, under the charges of this part
-  /// and, if only its tail is led, of those.
+  /// Only a part of the chain moves freely, and rates are those of this part. If the head is led, the
+  /// others feel only their own charges; a part whose tail is led also feels those of the tail.
   void lead(const LedParts& led);
 
   /// Must be called after the chain (not merely its state) has changed.
@@ -51,8 +51,8 @@ public:
   /// Other entries of `rate` get anything.
   void evaluate(double t, std::span<const double> y, std::span<double> rate,
                 BeadRange targets, BeadRange sources);
-  /// All but beads that have passed the collector and the few before them, which feel the kink in
-  /// their motion, while those fly on.
+  /// All but beads that have passed the collector and fly on, and the four above the first of them. The
+  /// motion of those four has a kink, and that of the passed ones does not matter any more.
   [[nodiscard]] std::size_t judged_rows(std::span<const double> end) const override;
   [[nodiscard]] StiffPart* stiff_part() override { return this; }
   /// Puts the nozzle and an embryo in their places at time t.
@@ -98,6 +98,7 @@ private:
   std::vector<ForceTerm*> with_columns_;   // terms that add integrated columns
   std::vector<std::size_t> resting_;       // entries of the state whose rate is zero
   BeadRange targets_, sources_;            // of a part of the chain
+  std::vector<double> own_force_;          // on beads that have passed the collector [N]
   std::shared_ptr<const Inflow> inflow_;
   bool feeds_ = false;
   ActingChain chain_;

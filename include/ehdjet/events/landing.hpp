@@ -39,7 +39,8 @@ public:
   void anticipate(double t, JetState& jet) const override;
   void list_inner_times(std::vector<double>& times) const override;
   void apply(EventContext& context) override;
-  [[nodiscard]] bool leaves_motion() const override { return true; }
+  /// Beads that passed within the step had landed for the others by then.
+  [[nodiscard]] bool leaves_motion() const override { return only_passed_; }
   void archive(const Archive& a) override {
     a("steps_per_landing", steps_per_landing_), a("last_step", last_step_);
   }
@@ -76,6 +77,7 @@ private:
   bool may_pass_;
   std::optional<std::size_t>
       located_;                    // the bead that ends the step, from the end of the chain
+  bool only_passed_ = false;       // those that landed last
   std::vector<Arrival> passing_;   // beads that do not, in the order of their landing
   double steps_per_landing_ = 100; // recent average
   std::uint64_t last_step_ = 0;

@@ -19,15 +19,13 @@ public:
 
   void clear() { known_ = 0; }
   [[nodiscard]] bool is_known() const { return known_ > 0; }
-  /// The field of today at the inner beads, x, y, z: each (beads). If beads have been born at the
+  /// The present field at the inner beads, x, y, z: each (beads). If beads have been born at the
   /// nozzle since the last call, they get the past of the bead below them, shifted by the difference of
   /// the present values.
   void learn(double t, std::span<const double> field, std::size_t beads);
   /// Adds to all that is known the field of charges that belong to the distant ones from now on, at
   /// the first beads, x, y, z: each (beads); the other beads leave.
   void add_to_past(std::span<const double> field, std::size_t beads);
-
-  void archive(const Archive& a) override;
 
 private:
   struct Known {

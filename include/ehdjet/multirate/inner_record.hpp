@@ -62,6 +62,7 @@ public:
                   std::span<const std::unique_ptr<Event>> events) override;
   void end_step(double t, double theta) override;
   void before_event(const Event& event, const JetState& jet) override;
+  void after_event(const Event& event, const JetState& jet) override;
 
 private:
   Piece& add_piece();

@@ -28,7 +28,8 @@ struct StepLimits {
   /// A step in which a link becomes shorter than this is too long, and if no step is short
   /// enough, the run stops; 0: links may vanish [m].
   double shortest_link = 0;
-  /// The end of a run is approached in equal steps: for many short runs one after the other.
+  /// The last two steps before the end of a run are equally long, and the step after it does not
+  /// depend on how short they were: for many short runs one after the other.
   bool even_at_end = false;
 };
 
@@ -68,7 +69,8 @@ public:
   /// Goes on with another chain of the same columns, from its time on. What is known about suitable steps
   /// and expected events is kept.
   void take_over(JetState jet, const Ledger& ledger);
-  void archive(const Archive& a);
+  /// What is known about suitable steps and expected events.
+  void archive_pace(const Archive& a);
 
   /// Runs to `end_time` [s]; observers see times up to and including it.
   /// errors : RunError with time, bead and term when the step size collapses or a state is not
@@ -107,6 +109,7 @@ private:
   void feed(JetState& jet, Ledger& ledger) const;
   void apply_events(std::size_t located);
   void apply(Event& event, EventContext& context);
+  void archive(const Archive& a);
   void make_checkpoint();
   [[nodiscard]] double next_checkpoint() const;
   [[nodiscard]] JetSnapshot now() const;
@@ -128,7 +131,8 @@ private:
   Ledger ledger_;
   RunStatistics statistics_;
   CompensatedSum time_;
-  double step_ = 0; // what to attempt next; 0: nothing known yet [s]
+  double step_ = 0;  // what to attempt next; 0: nothing known yet [s]
+  double uncut_ = 0; // at least that, if the step is accepted [s]
   double expected_event_ = std::numeric_limits<double>::infinity(); // [s]
   std::vector<double> restart_step_; // per event: a step that suits the motion after it [s]
   std::optional<std::size_t> after_event_; // the event that the next step follows

@@ -43,8 +43,9 @@ class TwoRate {
 public:
   struct Options {
     std::size_t inner_beads = 24; ///< m
+    double rtol = 1e-5;           ///< of the inner beads
     bool adapts = true; ///< m grows where the beads around it limit the macro step
-    std::size_t fewest_beads = 0;         ///< of a chain that is worth it
+    std::size_t fewest_beads = 0;         ///< a shorter chain has one rate
     std::optional<double> collector = {}; ///< its distance [m]
     double longest = 4e-4;                ///< macro step [s]
   };
@@ -57,7 +58,8 @@ public:
     std::unique_ptr<Integrator> integrator;
     ErrorScale scale; ///< of the integrator
     std::unique_ptr<CoulombSolver> inward,
-        outward; ///< between the parts, to the nozzle and away: exact
+        outward; ///< Coulomb sums at the inner and the
+                 ///< downstream beads, exact
     std::shared_ptr<const Inflow> inflow;
     std::shared_ptr<ExtrapolatedField> field;
     std::shared_ptr<ProjectedField> projected;
@@ -86,7 +88,7 @@ public:
 
   /// After an event has changed the chain. `only_end`: it took beads off the end that did not move.
   void chain_changed(const JetState& jet, bool only_end);
-  /// Forgets all that the next step could do without.
+  /// Forgets what is carried over from the last step; the next one computes it anew.
   void forget() { ready_ = false; }
   void count(RunStatistics& statistics) const;
   void archive(const Archive& a);
@@ -94,11 +96,16 @@ public:
 private:
   class Step;
 
+  [[nodiscard]] std::uint64_t downstream_evaluations() const {
+    return downstream_before_ + parts_.downstream->evaluations();
+  }
+
   void prepare(const JetState& jet);
   void evaluate_alone(const JetState& jet);
   void set_rate(const JetState& jet);
   static void rest_landed(const JetState& jet, std::vector<double>& rate);
   void prepare_inner(const JetState& jet, const Ledger& ledger);
+  bool run_inner(double end);
   void take_back_inner(double end);
   void learn_distant_field();
   void add_field_of(const JetState& chain, std::size_t first, std::size_t last,
@@ -107,11 +114,13 @@ private:
   void project(const JetState& jet, double h);
   void carry_over(const JetState& jet, const JetState& next, std::size_t births);
   void forget_distant(const JetState& next, std::size_t births);
-  bool adapt(std::size_t beads, std::size_t births);
+  bool adapt(std::size_t worst, std::size_t births);
 
   Parts parts_;
   Options options_;
-  std::size_t inner_beads_; // m
+  std::size_t inner_beads_;      // m
+  bool mismatch_limits_ = false; // the length of the last attempt
+  int failures_ = 0;             // of the inner beads, in a row
   std::size_t near_cut_ = 0,
               steps_in_window_ = 0; // macro steps that the beads around m limit
   double h_ = 0, start_ = 0;        // of the last attempt [s]
@@ -131,6 +140,8 @@ private:
   JetState inner_chain_;
   std::uint64_t inner_evaluations_ = 0;
   std::uint64_t macro_steps_ = 0;
+  std::uint64_t downstream_before_ =
+      0;                 // evaluations before the checkpoint that the run goes on from
   double full_sums_ = 0; // Coulomb pairs over all pairs of the chain
   double pairs_ = 0;     // between the parts, in this macro step
 };
