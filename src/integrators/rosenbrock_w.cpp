@@ -50,7 +50,7 @@ RosenbrockW::RosenbrockW(const RosenbrockTableau& method, ErrorScale scale)
 void RosenbrockW::resize(std::size_t n) {
   if (y1_.size() == n) return;
   for (auto& k : k_) k.resize(n);
-  for (auto* v : {&start_rate_, &stage_, &y1_, &error_}) v->resize(n);
+  for (auto* v : {&start_rate_, &y1_}) v->resize(n);
   restart();
 }
 
@@ -81,9 +81,9 @@ StepOutcome RosenbrockW::attempt(OdeSystem& system, double t, double h,
     }
     const double* f = start_rate_.data();
     if (place.count > 0) {
-      combine(y.data(), place, stage_.data(), n);
-      system.prescribe(t + alpha_[i] * h, stage_);
-      system.evaluate(t + alpha_[i] * h, stage_, k_[i]);
+      combine(y.data(), place, y1_.data(), n);
+      system.prescribe(t + alpha_[i] * h, y1_);
+      system.evaluate(t + alpha_[i] * h, y1_, k_[i]);
       f = k_[i].data();
     }
     combine(f, rate, k_[i].data(), n);
@@ -92,21 +92,28 @@ StepOutcome RosenbrockW::attempt(OdeSystem& system, double t, double h,
     combine(k_[i].data(), back, k_[i].data(), n);
   }
 
-  WeightedVectors end, difference;
-  for (std::size_t i = 0; i < k_.size(); ++i) {
-    end.add(k_[i].data(), h * method_->b[i]);
-    difference.add(k_[i].data(), h * (method_->b[i] - method_->embedded[i]));
-  }
+  WeightedVectors end;
+  for (std::size_t i = 0; i < k_.size(); ++i) end.add(k_[i].data(), h * method_->b[i]);
   combine(y.data(), end, y1_.data(), n);
-  std::ranges::fill(error_, 0.0);
-  combine(error_.data(), difference, error_.data(), n);
   system.prescribe(t + h, y1_);
   judged_ = system.judged_rows(y1_);
-  return {scale_.norm(error_, y0_, y1_, judged_)};
+  const WeightedVectors error = weighted_error();
+  return {scale_.norm([&error](std::size_t first,
+                               std::span<double> out) { combine_block(error, first, out); },
+                      y0_, y1_, judged_)};
+}
+
+WeightedVectors RosenbrockW::weighted_error() const {
+  WeightedVectors sum;
+  for (std::size_t i = 0; i < k_.size(); ++i)
+    sum.add(k_[i].data(), h_ * (method_->b[i] - method_->embedded[i]));
+  return sum;
 }
 
 std::size_t RosenbrockW::worst_component() const {
-  return scale_.worst(error_, y0_, y1_, judged_);
+  std::vector<double> error(y1_.size(), 0.0);
+  combine(error.data(), weighted_error(), error.data(), error.size());
+  return scale_.worst(error, y0_, y1_, judged_);
 }
 
 void RosenbrockW::dense_output(double theta, std::size_t first,

@@ -5,41 +5,68 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 #include <utility>
 
 #include "weighted_sum.hpp"
 
 namespace ehdjet {
 
+namespace {
+
+/// A stage to which nothing refers any more once all stages are known, or s if there is none. It can make
+/// room for k_s.
+std::size_t stage_done_with(const ButcherTableau& method) {
+  const auto is_used = [](const std::vector<double>& row, std::size_t j) {
+    return j < row.size() && row[j] != 0;
+  };
+  for (std::size_t j = 1; j < method.stages.size(); ++j) {
+    bool used = is_used(method.b, j);
+    for (const auto& row : method.error) used |= is_used(row, j);
+    for (const auto& row : method.dense) used |= is_used(row, j);
+    for (const auto& stage : method.extra) used |= is_used(stage.a, j);
+    if (!used) return j;
+  }
+  return method.stages.size();
+}
+
+} // namespace
+
 RungeKutta::RungeKutta(const ButcherTableau& method, ErrorScale scale)
     : method_(&method)
     , scale_(std::move(scale))
-    , k_(method.stages.size() + 1 + method.extra.size()) {
+    , k_(method.stages.size() + 1 + method.extra.size())
+    , end_(stage_done_with(method)) {
   EHDJET_EXPECTS(k_.size() <= WeightedVectors{}.vector.size());
   for (const auto& e : method.error) error_needs_end_ |= e.size() > method.stages.size();
 }
 
 void RungeKutta::resize(std::size_t n) {
   if (y1_.size() == n) return;
-  for (auto& k : k_) k.resize(n);
-  stage_.resize(n), y1_.resize(n);
-  if (method_->error_order > 0) error_.resize(n);
+  for (std::size_t j = 0; j < k_.size(); ++j) k(j).resize(n);
+  y1_.resize(n);
+  if (!method_->extra.empty()) extra_stage_.resize(n);
   restart();
 }
 
-void RungeKutta::evaluate_stage(OdeSystem& system, std::size_t k, double c,
-                                const std::vector<double>& a) {
+WeightedVectors RungeKutta::weighted(double factor, const std::vector<double>& row) const {
   WeightedVectors sum;
-  for (std::size_t j = 0; j < a.size(); ++j) sum.add(k_[j].data(), h_ * a[j]);
-  combine(y0_.data(), sum, stage_.data(), stage_.size());
-  system.prescribe(t_ + c * h_, stage_);
-  system.evaluate(t_ + c * h_, stage_, k_[k]);
+  for (std::size_t j = 0; j < row.size(); ++j) sum.add(k(j).data(), factor * row[j]);
+  return sum;
+}
+
+void RungeKutta::evaluate_stage(OdeSystem& system, std::size_t j,
+                                const ButcherTableau::Stage& stage,
+                                std::vector<double>& place) {
+  combine(y0_.data(), weighted(h_, stage.a), place.data(), place.size());
+  system.prescribe(t_ + stage.c * h_, place);
+  system.evaluate(t_ + stage.c * h_, place, k(j));
 }
 
 void RungeKutta::evaluate_end(OdeSystem& system) {
   if (end_known_) return;
   system.prescribe(t_ + h_, y1_);
-  system.evaluate(t_ + h_, y1_, k_[method_->stages.size()]);
+  system.evaluate(t_ + h_, y1_, k(method_->stages.size()));
   end_known_ = true;
 }
 
@@ -48,47 +75,43 @@ StepOutcome RungeKutta::attempt(OdeSystem& system, double t, double h,
   resize(y.size());
   y0_ = y, t_ = t, h_ = h;
   end_known_ = extra_known_ = false;
-  if (!first_known_) system.evaluate(t, y, k_[0]);
+  if (!first_known_) system.evaluate(t, y, k(0));
   first_known_ = true;
   const auto& stages = method_->stages;
-  for (std::size_t i = 1; i < stages.size(); ++i)
-    evaluate_stage(system, i, stages[i].c, stages[i].a);
+  for (std::size_t i = 1; i < stages.size(); ++i) evaluate_stage(system, i, stages[i], y1_);
 
-  WeightedVectors sum;
-  for (std::size_t j = 0; j < method_->b.size(); ++j)
-    sum.add(k_[j].data(), h * method_->b[j]);
-  combine(y0_.data(), sum, y1_.data(), y1_.size());
+  combine(y0_.data(), weighted(h, method_->b), y1_.data(), y1_.size());
   if (method_->error_order == 0) return {.error = is_finite(y1_) ? 0.0 : std::nan("")};
   if (error_needs_end_) evaluate_end(system);
   judged_ = system.judged_rows(y1_);
   return {estimated_error()};
 }
 
-double RungeKutta::estimated_error() {
+double RungeKutta::estimated_error() const {
   std::array<double, 2> norms{};
-  for (std::size_t e = method_->error.size();
-       e-- > 0;) { // the first estimate is computed last and stays in error_
-    WeightedVectors sum;
-    for (std::size_t j = 0; j < method_->error[e].size(); ++j)
-      sum.add(k_[j].data(), h_ * method_->error[e][j]);
-    std::ranges::fill(error_, 0.0);
-    combine(error_.data(), sum, error_.data(), error_.size());
-    norms[e] = scale_.norm(error_, y0_, y1_, judged_);
+  for (std::size_t e = 0; e < method_->error.size(); ++e) {
+    const WeightedVectors sum = weighted(h_, method_->error[e]);
+    norms[e] =
+        scale_.norm([&sum](std::size_t first,
+                           std::span<double> out) { combine_block(sum, first, out); },
+                    y0_, y1_, judged_);
   }
   if (method_->error.size() == 1 || norms[0] == 0) return norms[0];
   return norms[0] / std::hypot(1.0, 0.1 * norms[1] / norms[0]); // no square underflows
 }
 
 std::size_t RungeKutta::worst_component() const {
-  return error_.empty() ? 0 : scale_.worst(error_, y0_, y1_, judged_);
+  if (method_->error_order == 0) return 0;
+  std::vector<double> error(y1_.size(), 0.0);
+  combine(error.data(), weighted(h_, method_->error[0]), error.data(), error.size());
+  return scale_.worst(error, y0_, y1_, judged_);
 }
 
 void RungeKutta::prepare_dense_output(OdeSystem& system) {
   evaluate_end(system);
   if (extra_known_) return;
   for (std::size_t i = 0; i < method_->extra.size(); ++i)
-    evaluate_stage(system, method_->stages.size() + 1 + i, method_->extra[i].c,
-                   method_->extra[i].a);
+    evaluate_stage(system, method_->stages.size() + 1 + i, method_->extra[i], extra_stage_);
   extra_known_ = true;
 }
 
@@ -114,26 +137,30 @@ void RungeKutta::dense_output(double theta, std::size_t first,
       weight[i] += h_ * factor * method_->dense[r][i];
   }
   WeightedVectors sum;
-  for (std::size_t i = 0; i < k_.size(); ++i) sum.add(k_[i].data() + first, weight[i]);
-  for (std::size_t i = 0; i < out.size(); ++i)
-    out[i] = y0_[first + i] + difference * (y1_[first + i] - y0_[first + i]);
+  for (std::size_t i = 0; i < k_.size(); ++i) sum.add(k(i).data() + first, weight[i]);
+  const double *y0 = y0_.data() + first, *y1 = y1_.data() + first;
+  double* y = out.data();
+  for_parts(0, out.size(), [=](std::size_t begin, std::size_t end_of_part) {
+    for (std::size_t i = begin; i < end_of_part; ++i)
+      y[i] = y0[i] + difference * (y1[i] - y0[i]);
+  });
   combine(out.data(), sum, out.data(), out.size());
 }
 
 std::span<const double> RungeKutta::end_rate() const {
   if (!end_known_) return {};
-  return k_[method_->stages.size()];
+  return k(method_->stages.size());
 }
 
 void RungeKutta::start_from_rate(std::span<const double> rate) {
   resize(rate.size());
-  std::ranges::copy(rate, k_.front().begin());
+  std::ranges::copy(rate, k(0).begin());
   first_known_ = true;
 }
 
 void RungeKutta::commit(std::vector<double>& y) {
   y.swap(y1_);
-  if (end_known_) k_.front().swap(k_[method_->stages.size()]);
+  if (end_known_) k(0).swap(k(method_->stages.size()));
   // It is evaluated at t_ + h_, which may differ from the next t by round-off. Only a method that
   // always evaluates it may use it; otherwise a read inside the step would change the jet.
   first_known_ = end_known_ && error_needs_end_;
@@ -141,9 +168,9 @@ void RungeKutta::commit(std::vector<double>& y) {
 
 double RungeKutta::initial_step(OdeSystem& system, double t, std::span<const double> y) {
   resize(y.size());
-  system.evaluate(t, y, k_[0]);
+  system.evaluate(t, y, k(0));
   first_known_ = true;
-  const double rate = scale_.norm(k_[0], y, y) * scale_.rtol; // relative change per second
+  const double rate = scale_.norm(k(0), y, y) * scale_.rtol; // relative change per second
   return rate > 0 ? 0.01 / rate : 0;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <limits>
 #include <span>
 #include <vector>
@@ -22,6 +23,12 @@ struct ErrorScale {
   /// Norm of `error`, with |y| the larger of |y0|, |y1|. Not a number if any component is not.
   /// Of each column only the first `judged` rows count.
   [[nodiscard]] double norm(std::span<const double> error, std::span<const double> y0,
+                            std::span<const double> y1,
+                            std::size_t judged = all_rows) const;
+  /// The same of an error that is never stored as a whole: `error(first, out)` writes its components
+  /// from `first` on to `out`. It is called by several threads.
+  using ErrorPart = std::function<void(std::size_t first, std::span<double> out)>;
+  [[nodiscard]] double norm(const ErrorPart& error, std::span<const double> y0,
                             std::span<const double> y1,
                             std::size_t judged = all_rows) const;
   /// Component where error / allowed is largest or not a number.

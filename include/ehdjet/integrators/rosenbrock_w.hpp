@@ -9,6 +9,8 @@
 
 namespace ehdjet {
 
+struct WeightedVectors;
+
 /// Rosenbrock-W methods: steps are not limited by the rates in the system's stiff part.
 ///
 /// cost   : s evaluations, s linear solutions, one linearization and one factorization a step;
@@ -39,6 +41,7 @@ public:
 private:
   void resize(std::size_t n);
   void prepare_start(OdeSystem& system, double t, std::span<const double> y);
+  [[nodiscard]] WeightedVectors weighted_error() const;
 
   const RosenbrockTableau* method_;
   ErrorScale scale_;
@@ -47,7 +50,8 @@ private:
       dense_; // of b_i: coefficients of theta, theta^2, theta^3
 
   std::vector<std::vector<double>> k_;
-  std::vector<double> start_rate_, stage_, y1_, error_;
+  std::vector<double> start_rate_;
+  std::vector<double> y1_; // until the last stage is known: where it is evaluated
   std::span<const double> y0_;
   double h_ = 0;
   std::size_t judged_ = 0;   // rows of each column

@@ -8,11 +8,14 @@
 
 namespace ehdjet {
 
+struct WeightedVectors;
+
 /// Explicit Runge-Kutta methods, one loop for all tableaus.
 ///
 /// cost   : s evaluations a step (the derivative at the end of a step is the first stage of the
 ///          next one); dense output needs that derivative at once and the tableau's extra stages.
-///          Memory: s + 3 vectors, allocated when the size of y grows
+///          Memory: s + 1 vectors, one more for each extra stage and one if there are any, one less if
+///          nobody needs a stage again after the last one. Allocated when the size of y grows
 /// source : Hairer, Norsett & Wanner, Solving Ordinary Differential Equations I, 2nd ed. (1993)
 class RungeKutta final : public Integrator {
 public:
@@ -36,17 +39,29 @@ public:
 
 private:
   void resize(std::size_t n);
-  void evaluate_stage(OdeSystem& system, std::size_t k, double c,
-                      const std::vector<double>& a);
+  /// k_j at `place`, which is overwritten.
+  void evaluate_stage(OdeSystem& system, std::size_t j, const ButcherTableau::Stage& stage,
+                      std::vector<double>& place);
   void evaluate_end(OdeSystem& system);
-  double estimated_error();
+  [[nodiscard]] WeightedVectors weighted(double factor,
+                                         const std::vector<double>& row) const;
+  [[nodiscard]] double estimated_error() const;
+  /// k_j, j = 0 ... s, then the extra stages.
+  [[nodiscard]] std::vector<double>& k(std::size_t j) {
+    return k_[j == method_->stages.size() ? end_ : j];
+  }
+  [[nodiscard]] const std::vector<double>& k(std::size_t j) const {
+    return k_[j == method_->stages.size() ? end_ : j];
+  }
 
   const ButcherTableau* method_;
   ErrorScale scale_;
   bool error_needs_end_ = false;
 
-  std::vector<std::vector<double>> k_; // s stages, k_s, extra stages
-  std::vector<double> stage_, y1_, error_;
+  std::vector<std::vector<double>> k_; // s stages, k_s, extra stages; see end_
+  std::size_t end_;                    // the entry of k_ in which k_s is kept
+  std::vector<double> y1_; // until the last stage is known: where it is evaluated
+  std::vector<double> extra_stage_;
   std::span<const double> y0_;
   double t_ = 0, h_ = 0;
   std::size_t judged_ = 0; // rows of each column
