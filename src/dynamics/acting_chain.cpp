@@ -1,5 +1,7 @@
 #include "ehdjet/dynamics/acting_chain.hpp"
 
+#include "ehdjet/core/parallel.hpp"
+
 #include <algorithm>
 
 namespace ehdjet {
@@ -103,7 +105,10 @@ void ActingChain::absorb(std::span<const double> y) {
     absorbed_.clear(), flying_on_ = 0;
     return;
   }
-  state_.assign(y.begin(), y.end());
+  state_.resize(y.size());
+  for_parts(0, y.size(), [&](std::size_t begin, std::size_t end) {
+    std::copy(y.data() + begin, y.data() + end, state_.data() + begin);
+  });
   const Vec3View place = JetColumns<double>{state_, mass_.size()}.position();
   charge_before_.clear();
   for (std::size_t i = 0; i < absorbed_.size(); ++i) {

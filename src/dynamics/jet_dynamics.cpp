@@ -1,6 +1,7 @@
 #include "ehdjet/dynamics/jet_dynamics.hpp"
 
 #include "ehdjet/core/error.hpp"
+#include "ehdjet/core/parallel.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -95,21 +96,25 @@ void JetDynamics::evaluate(double t, std::span<const double> y, std::span<double
   const std::size_t n = chain_.beads();
   const JetColumns<double> rates{rate, n};
   const Vec3View force = rates.velocity(); // summed in place, then divided by the mass
-  for (double* f : {force.x.data(), force.y.data(), force.z.data()})
-    std::fill(f + begin, f + end, 0.0);
+  double *fx = force.x.data(), *fy = force.y.data(), *fz = force.z.data();
+  for_parts(begin, end, [=](std::size_t from, std::size_t to) {
+    for (double* f : {fx, fy, fz}) std::fill(f + from, f + to, 0.0);
+  });
   for (const auto& term : terms_) term->add_force(stage, force);
   for (ForceTerm* term : with_columns_) term->set_column_rates(stage, rates);
   if (constraints().led.passed_fly_on && chain_.flying_on() < end) let_fly_on(force);
 
-  for (std::size_t c = 0; c < 3; ++c) { // dr/dt = v
-    const double* velocity = y.data() + (c + 3) * n;
-    std::copy(velocity + begin, velocity + end, rate.data() + c * n + begin);
-  }
   const double* w = chain_.inverse_mass().data();
-  for (double* f : {force.x.data(), force.y.data(), force.z.data()}) {
+  for_parts(begin, end, [=](std::size_t from, std::size_t to) {
+    for (std::size_t c = 0; c < 3; ++c) { // dr/dt = v
+      const double* velocity = y.data() + (c + 3) * n;
+      std::copy(velocity + from, velocity + to, rate.data() + c * n + from);
+    }
+    for (double* f : {fx, fy, fz}) {
 #pragma omp simd
-    for (std::size_t k = begin; k < end; ++k) f[k] *= w[k];
-  }
+      for (std::size_t k = from; k < to; ++k) f[k] *= w[k];
+    }
+  });
   // How beads that have passed fly on does not matter any more: they do so like the one before
   // them, because a jump of their own acceleration would only shorten the step.
   const auto absorbed = chain_.absorbed();

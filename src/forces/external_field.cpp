@@ -1,13 +1,17 @@
 #include "ehdjet/forces/external_field.hpp"
 
+#include "ehdjet/core/parallel.hpp"
+
 namespace ehdjet {
 
 void ExternalField::add_force(const Stage& stage, Vec3View force) {
   const double *q = stage.charge.data(), e = strength_;
   double* fx = force.x.data();
   const BeadRange targets = stage.targets.within(stage.beads());
+  for_parts(targets.begin, targets.end, [=](std::size_t begin, std::size_t end) {
 #pragma omp simd
-  for (std::size_t k = targets.begin; k < targets.end; ++k) fx[k] += q[k] * e;
+    for (std::size_t k = begin; k < end; ++k) fx[k] += q[k] * e;
+  });
 }
 
 TermAccount ExternalField::account() const {

@@ -1,13 +1,17 @@
 #include "ehdjet/forces/gravity.hpp"
 
+#include "ehdjet/core/parallel.hpp"
+
 namespace ehdjet {
 
 void Gravity::add_force(const Stage& stage, Vec3View force) {
   const double *m = stage.mass.data(), g = acceleration_;
   double* fx = force.x.data();
   const BeadRange targets = stage.targets.within(stage.beads());
+  for_parts(targets.begin, targets.end, [=](std::size_t begin, std::size_t end) {
 #pragma omp simd
-  for (std::size_t k = targets.begin; k < targets.end; ++k) fx[k] += m[k] * g;
+    for (std::size_t k = begin; k < end; ++k) fx[k] += m[k] * g;
+  });
 }
 
 TermAccount Gravity::account() const {

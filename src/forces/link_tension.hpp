@@ -1,6 +1,7 @@
 #pragma once
 
 #include "ehdjet/core/columns.hpp"
+#include "ehdjet/core/parallel.hpp"
 #include "ehdjet/jet/links.hpp"
 
 #include <cstddef>
@@ -15,16 +16,19 @@ namespace ehdjet {
 ///          links.first ... links.last, and 0 at the entry behind
 inline void add_link_tension(const Links& links, std::span<const double> tension_per_length,
                              BeadRange targets, Vec3View force) {
-  const double* t = tension_per_length.data();
-  const auto component = [&](const double* d, double* f) {
-    if (targets.begin == 0) f[0] += t[links.head] * d[links.head];
+  const double *t = tension_per_length.data(), *dx = links.dx.data(), *dy = links.dy.data(),
+               *dz = links.dz.data();
+  double *fx = force.x.data(), *fy = force.y.data(), *fz = force.z.data();
+  if (const std::size_t k = links.head; targets.begin == 0)
+    fx[0] += t[k] * dx[k], fy[0] += t[k] * dy[k], fz[0] += t[k] * dz[k];
+  for_parts(links.beads.begin, links.beads.end, [=](std::size_t begin, std::size_t end) {
 #pragma omp simd
-    for (std::size_t k = links.beads.begin; k < links.beads.end; ++k)
-      f[k] += t[k + 1] * d[k + 1] - t[k] * d[k];
-  };
-  component(links.dx.data(), force.x.data());
-  component(links.dy.data(), force.y.data());
-  component(links.dz.data(), force.z.data());
+    for (std::size_t k = begin; k < end; ++k) {
+      fx[k] += t[k + 1] * dx[k + 1] - t[k] * dx[k];
+      fy[k] += t[k + 1] * dy[k + 1] - t[k] * dy[k];
+      fz[k] += t[k + 1] * dz[k + 1] - t[k] * dz[k];
+    }
+  });
 }
 
 /// Room for a value per link, with the zero that loops behind the last link meet.

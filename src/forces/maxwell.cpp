@@ -1,6 +1,7 @@
 #include "ehdjet/forces/maxwell.hpp"
 
 #include "ehdjet/core/error.hpp"
+#include "ehdjet/core/parallel.hpp"
 
 #include <cmath>
 
@@ -31,9 +32,10 @@ void Maxwell::add_force(const Stage& stage, Vec3View force) {
   const double *l = links.length.data(), *v = stage.volume.data(),
                *sigma = stage.columns.column(stress_).data();
   double* t = per_link(links, tension_per_length_);
+  for_parts(links.first, links.last + 1, [=](std::size_t begin, std::size_t end) {
 #pragma omp simd
-  for (std::size_t k = links.first; k <= links.last; ++k)
-    t[k] = v[k] * sigma[k] / (l[k] * l[k]);
+    for (std::size_t k = begin; k < end; ++k) t[k] = v[k] * sigma[k] / (l[k] * l[k]);
+  });
   add_link_tension(links, tension_per_length_, stage.targets, force);
 }
 
@@ -54,8 +56,10 @@ void Maxwell::set_column_rates(const Stage& stage, JetColumns<double> rates) {
   for (std::size_t k = stage.targets.begin; k < links.head; ++k) out[k] = 0;
   std::size_t begin = links.beads.begin;
   if (begin == links.head && begin < links.beads.end) link(begin++, 0);
+  for_parts(begin, links.beads.end, [=](std::size_t from, std::size_t to) {
 #pragma omp simd
-  for (std::size_t k = begin; k < links.beads.end; ++k) link(k, k - 1);
+    for (std::size_t k = from; k < to; ++k) link(k, k - 1);
+  });
   if (stage.feed != nullptr && links.beads.begin <= 1 && links.beads.end > 1)
     out[1] = fed_rate(stage);
 

@@ -1,6 +1,7 @@
 #include "ehdjet/forces/near_field.hpp"
 
 #include "ehdjet/core/constants.hpp"
+#include "ehdjet/core/parallel.hpp"
 
 #include <cmath>
 #include <numbers>
@@ -46,17 +47,20 @@ void NearField::add_force(const Stage& stage, Vec3View force) {
                *q = stage.link_charge.data();
   double* t = per_link(links, tension_per_length_);
   if (options_.softened) {
-    for (std::size_t k = links.first; k <= links.last; ++k)
-      t[k] = -push_of_link(stage, k).push / l[k];
+    for_parts(links.first, links.last + 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k) t[k] = -push_of_link(stage, k).push / l[k];
+    });
   } else {
     // The same as `push`, in a form that vectorises: d + w e = ln(l/a) - B.
     const double b = weight() + std::numbers::egamma - std::numbers::ln2;
+    for_parts(links.first, links.last + 1, [=](std::size_t begin, std::size_t end) {
 #pragma omp simd
-    for (std::size_t k = links.first; k <= links.last; ++k) {
-      const double slenderness =
-          0.5 * std::log(std::numbers::pi * l[k] * l[k] * l[k] / v[k]); // ln(l/a)
-      t[k] = -constants::coulomb * q[k] * q[k] * (slenderness - b) / (l[k] * l[k] * l[k]);
-    }
+      for (std::size_t k = begin; k < end; ++k) {
+        const double slenderness =
+            0.5 * std::log(std::numbers::pi * l[k] * l[k] * l[k] / v[k]); // ln(l/a)
+        t[k] = -constants::coulomb * q[k] * q[k] * (slenderness - b) / (l[k] * l[k] * l[k]);
+      }
+    });
     if (links.first <= 2 && is_split(stage, 2)) t[2] = -push_of_link(stage, 2).push / l[2];
   }
   add_link_tension(links, tension_per_length_, stage.targets, force);

@@ -1,5 +1,6 @@
 #include "ehdjet/forces/surface_tension.hpp"
 
+#include "ehdjet/core/parallel.hpp"
 #include "ehdjet/jet/curvature.hpp"
 
 #include <algorithm>
@@ -17,19 +18,24 @@ void BendingSurfaceTension::add_force(const Stage& stage, Vec3View force) {
   radius_.resize(links.length.size());
   double *a = radius_.data(), *fx = force.x.data(), *fy = force.y.data(),
          *fz = force.z.data();
+  for_parts(links.first, links.last + 1, [=](std::size_t begin, std::size_t end) {
 #pragma omp simd
-  for (std::size_t k = links.first; k <= links.last; ++k)
-    a[k] = std::sqrt(v[k] / (std::numbers::pi * l[k]));
+    for (std::size_t k = begin; k < end; ++k)
+      a[k] = std::sqrt(v[k] / (std::numbers::pi * l[k]));
+  });
 
   const double alpha = coefficient_;
-  const std::size_t end = std::min(links.beads.end, stage.beads() - 1);
+  const std::size_t last = std::min(links.beads.end, stage.beads() - 1);
+  for_parts(links.beads.begin, last, [=](std::size_t begin, std::size_t end) {
 #pragma omp simd
-  for (std::size_t k = links.beads.begin; k < end; ++k) {
-    const Curvature c = curvature(-dx[k], -dy[k], -dz[k], dx[k + 1], dy[k + 1], dz[k + 1]);
-    const double mean_radius = (a[k] + a[k + 1]) / 2;
-    const double strength = alpha * std::numbers::pi * mean_radius * mean_radius;
-    fx[k] += strength * c.x, fy[k] += strength * c.y, fz[k] += strength * c.z;
-  }
+    for (std::size_t k = begin; k < end; ++k) {
+      const Curvature c =
+          curvature(-dx[k], -dy[k], -dz[k], dx[k + 1], dy[k + 1], dz[k + 1]);
+      const double mean_radius = (a[k] + a[k + 1]) / 2;
+      const double strength = alpha * std::numbers::pi * mean_radius * mean_radius;
+      fx[k] += strength * c.x, fy[k] += strength * c.y, fz[k] += strength * c.z;
+    }
+  });
 }
 
 TermAccount BendingSurfaceTension::account() const {
@@ -66,9 +72,11 @@ void LineSurfaceTension::add_force(const Stage& stage, Vec3View force) {
   const double *l = links.length.data(), *v = stage.volume.data();
   double* t = per_link(links, tension_per_length_);
   const double alpha = coefficient_;
+  for_parts(links.first, links.last + 1, [=](std::size_t begin, std::size_t end) {
 #pragma omp simd
-  for (std::size_t k = links.first; k <= links.last; ++k) // pi a alpha / l
-    t[k] = alpha * std::sqrt(std::numbers::pi * v[k] / l[k]) / l[k];
+    for (std::size_t k = begin; k < end; ++k) // pi a alpha / l
+      t[k] = alpha * std::sqrt(std::numbers::pi * v[k] / l[k]) / l[k];
+  });
   add_link_tension(links, tension_per_length_, stage.targets, force);
 }
 

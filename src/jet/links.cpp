@@ -1,5 +1,7 @@
 #include "ehdjet/jet/links.hpp"
 
+#include "ehdjet/core/parallel.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -16,16 +18,19 @@ void Links::compute(ConstVec3View r, std::size_t first_bead, BeadRange targets) 
   for (const std::size_t k : {std::size_t{0}, std::size_t{1}, n})
     dx[k] = dy[k] = dz[k] = 0, length[k] = 1;
 
-  const auto link = [&](std::size_t k, std::size_t upstream) {
-    dx[k] = r.x[k] - r.x[upstream];
-    dy[k] = r.y[k] - r.y[upstream];
-    dz[k] = r.z[k] - r.z[upstream];
-    length[k] = std::sqrt(dx[k] * dx[k] + dy[k] * dy[k] + dz[k] * dz[k]);
+  const auto link = [r, x = dx.data(), y = dy.data(), z = dz.data(),
+                     l = length.data()](std::size_t k, std::size_t upstream) {
+    x[k] = r.x[k] - r.x[upstream];
+    y[k] = r.y[k] - r.y[upstream];
+    z[k] = r.z[k] - r.z[upstream];
+    l[k] = std::sqrt(x[k] * x[k] + y[k] * y[k] + z[k] * z[k]);
   };
   std::size_t begin = first;
   if (begin == head && begin < n) link(begin++, 0);
+  for_parts(begin, last + 1, [&link](std::size_t from, std::size_t to) {
 #pragma omp simd
-  for (std::size_t k = begin; k <= last; ++k) link(k, k - 1);
+    for (std::size_t k = from; k < to; ++k) link(k, k - 1);
+  });
 }
 
 } // namespace ehdjet
