@@ -10,6 +10,8 @@
 #include <benchmark/benchmark.h>
 #include <omp.h>
 
+#include <cmath>
+
 namespace {
 
 using namespace ehdjet;
@@ -76,6 +78,87 @@ void step(benchmark::State& state, const char* method) {
 }
 BENCHMARK_CAPTURE(step, dormand_prince, "dormand-prince");
 BENCHMARK_CAPTURE(step, dop853, "dop853");
+
+// --- long jets: range(0) beads on range(1) threads
+
+/// A helix of links of 0.2 mm with the beads of the PVP jet.
+JetState long_jet(std::size_t beads) {
+  JetState jet = blank_jet(whipping_jet().table, beads);
+  const Bead bead = bead_at(whipping_jet(), 100);
+  constexpr double link = 2e-4, radius = 0.02,
+                   rise = 0.03; // [m], [m], axial part of a link
+  for (std::size_t k = 0; k < beads; ++k) {
+    const double s = link * static_cast<double>(k), angle = s / radius;
+    jet.columns().position().set(
+        k, {rise * s, radius * std::cos(angle), radius * std::sin(angle)});
+    jet.columns().velocity().set(k, bead.velocity);
+    jet.mass[k] = bead.mass, jet.charge[k] = bead.charge, jet.volume[k] = bead.volume;
+  }
+  return jet;
+}
+
+struct LongJet {
+  LongJet(benchmark::State& state, bool with_coulomb)
+      : jet(long_jet(static_cast<std::size_t>(state.range(0)))) {
+    omp_set_num_threads(static_cast<int>(state.range(1)));
+    Scene scene = read_scene(EHDJET_SCENES "/pvp.toml");
+    scene.config.coulomb->solver = "fmm", scene.config.coulomb->tolerance = 1e-3;
+    if (!with_coulomb) scene.config.coulomb.reset();
+    dynamics = build_dynamics(scene);
+    dynamics->bind(jet);
+  }
+  JetState jet;
+  std::unique_ptr<JetDynamics> dynamics;
+};
+
+void evaluate_long(benchmark::State& state, bool with_coulomb) {
+  LongJet of(state, with_coulomb);
+  std::vector<double> rate(of.jet.y.size());
+  for (auto _ : state) {
+    of.dynamics->evaluate(of.jet.time, of.jet.y, rate);
+    benchmark::DoNotOptimize(rate.data());
+  }
+}
+
+/// What a step adds to its evaluations, divided by their number: those of a system that costs
+/// nothing.
+void combine_long(benchmark::State& state) {
+  struct AtRest final : OdeSystem {
+    void evaluate(double, std::span<const double>, std::span<double>) override { ++count; }
+    std::size_t count = 0;
+  } system;
+  omp_set_num_threads(static_cast<int>(state.range(1)));
+  const std::vector<double> y(7 * static_cast<std::size_t>(state.range(0)), 1.0);
+  RungeKutta integrator(butcher_tableau("dormand-prince"),
+                        {.rtol = 1e-6, .column_scale = {2e-4, 2e-4, 2e-4, 1, 1, 1, 500}});
+  (void)integrator.attempt(system, 0, 1e-6, y); // allocates
+  system.count = 0;
+  for (auto _ : state) benchmark::DoNotOptimize(integrator.attempt(system, 0, 1e-6, y));
+  state.counters["per_evaluation"] =
+      benchmark::Counter(static_cast<double>(system.count),
+                         benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+}
+
+void bind_long(benchmark::State& state) {
+  LongJet of(state, false);
+  for (auto _ : state) of.dynamics->bind(of.jet);
+}
+
+void linearize_long(benchmark::State& state) {
+  LongJet of(state, false);
+  for (auto _ : state) of.dynamics->stiff_part()->linearize(of.jet.time, of.jet.y);
+}
+
+void sizes(benchmark::internal::Benchmark* b) {
+  b->ArgsProduct({{1'000, 10'000, 100'000, 1'000'000}, {1, 2}})
+      ->UseRealTime()
+      ->Unit(benchmark::kMicrosecond);
+}
+BENCHMARK_CAPTURE(evaluate_long, everything, true)->Apply(sizes);
+BENCHMARK_CAPTURE(evaluate_long, everything_else, false)->Apply(sizes);
+BENCHMARK(combine_long)->Apply(sizes);
+BENCHMARK(bind_long)->Apply(sizes);
+BENCHMARK(linearize_long)->Apply(sizes);
 
 } // namespace
 
