@@ -37,7 +37,7 @@ void report_violations(Simulation& simulation, double tolerance) {
   });
 }
 
-std::string summary(const RunResult& result, const Scene& scene,
+std::string summary(const RunResult& result, const SceneConfig& scene,
                     const std::filesystem::path& file) {
   const JetState& jet = result.jet;
   const auto r = jet.columns().position();
@@ -55,12 +55,12 @@ std::string summary(const RunResult& result, const Scene& scene,
     text += fmt::format(
         "  collector     last bead landed with radius {:.5g} um at {:.6g} m/s\n",
         1e6 * result.ledger.collector_radius, result.ledger.impact_speed);
-  if (scene.config.nozzle || scene.config.collector)
+  if (scene.nozzle || scene.collector)
     text += fmt::format("  events        {} insertions, {} releases, {} landings\n",
                         cost.insertions, cost.releases, cost.landings);
   if (cost.refinements)
     text += fmt::format("  refinements   {} that changed the mesh\n", *cost.refinements);
-  if (scene.config.nozzle && jet.time > 0) {
+  if (scene.nozzle && jet.time > 0) {
     const double flow = result.ledger.inserted_volume / jet.time;
     text += fmt::format(
         "  inflow        {:.4g} m^3/s ({:.4g} mL/h), {:.4g} A, means since t = 0\n", flow,
@@ -76,8 +76,8 @@ std::string summary(const RunResult& result, const Scene& scene,
     text += fmt::format("  Coulomb       {}\n", result.coulomb_method);
   if (cost.method)
     text += fmt::format("  integrator    {}: {} since t = {:.4g} s, {} changes\n",
-                        scene.config.integrator.method, cost.method->in_use,
-                        cost.method->since, cost.method->changes);
+                        scene.integrator.method, cost.method->in_use, cost.method->since,
+                        cost.method->changes);
   if (cost.two_rates && cost.two_rates->steps > 0)
     text += fmt::format(
         "  two rates     {} macro steps with {} evaluations of the {} beads at the "
@@ -93,7 +93,8 @@ std::string summary(const RunResult& result, const Scene& scene,
 }
 
 void run(const Options& options) {
-  const Scene scene = options.scene.read();
+  Scene scene = options.scene.read();
+  const SceneConfig config = scene.config;
   const std::filesystem::path path =
       options.output.empty()
           ? std::filesystem::path(options.scene.scene).filename().replace_extension(".h5")
@@ -108,7 +109,7 @@ void run(const Options& options) {
   run.started = [&](Simulation& simulation) {
     interrupt.emplace();
     if (options.quiet) return;
-    const SceneConfig& c = scene.config;
+    const SceneConfig& c = config;
     for (const std::string& warning : near_field_warnings(c))
       fmt::print(stderr, "warning: {}\n", warning);
     const double start = simulation.jet().time, end = c.run.end_time;
@@ -119,12 +120,12 @@ void run(const Options& options) {
     progress.emplace(start, end);
     simulation.after_each_step([&](const Simulation& s) { progress->show(s); });
   };
-  const RunResult result = run_scene(scene, path, std::move(run));
+  const RunResult result = run_scene(std::move(scene), path, std::move(run));
   progress.reset();
   if (result.status == "interrupted")
     throw RunError(
         fmt::format("{}; everything up to then is in {}", result.message, path.string()));
-  if (!options.quiet) fmt::print("{}", summary(result, scene, path));
+  if (!options.quiet) fmt::print("{}", summary(result, config, path));
 }
 
 } // namespace

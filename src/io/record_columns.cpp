@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <numbers>
 
 namespace ehdjet {
@@ -60,14 +61,14 @@ auto number_of(std::size_t RefinementRecord::*value) {
   return [value](const RefinementRecord& r) { return static_cast<double>(r.*value); };
 }
 
-/// A column that `fill(snapshot, values)` computes. The values are zero before.
+/// A column that `fill(snapshot, values)` computes. The values are zero before, and valid until the next
+/// column with the same `room` is computed.
 template <class Fill>
-auto computed(Fill fill) {
-  return [fill, values = std::vector<double>()](
-             const JetSnapshot& s) mutable -> std::span<const double> {
-    values.assign(s.jet.beads(), 0.0);
-    fill(s, values);
-    return values;
+auto computed(const std::shared_ptr<std::vector<double>>& room, Fill fill) {
+  return [room, fill](const JetSnapshot& s) -> std::span<const double> {
+    room->assign(s.jet.beads(), 0.0);
+    fill(s, *room);
+    return *room;
   };
 }
 
@@ -166,22 +167,23 @@ std::vector<FrameColumn> frame_columns(const BeadTable& table) {
   const auto info = [](const BeadColumn& c) {
     return ColumnInfo{c.name, c.unit, c.description};
   };
+  const auto room = std::make_shared<std::vector<double>>();
   std::vector<FrameColumn> columns;
   for (const BeadColumn& c : table.integrated())
     columns.push_back({info(c), [place = columns.size()](const JetSnapshot& s) {
                          return s.columns.column(place);
                        }});
   columns.push_back(
-      {{"radius", "m", "of the link to the bead upstream"}, computed(fill_radius)});
+      {{"radius", "m", "of the link to the bead upstream"}, computed(room, fill_radius)});
   for (std::size_t c = 0; c < table.carried().size(); ++c)
     columns.push_back(
         {info(table.carried()[c]), [c](const JetSnapshot& s) -> std::span<const double> {
            return s.jet.carried(c);
          }});
-  columns.push_back(
-      {{"landed", "1", "1: the bead rests on the collector", flag}, computed(mark_landed)});
+  columns.push_back({{"landed", "1", "1: the bead rests on the collector", flag},
+                     computed(room, mark_landed)});
   columns.push_back({{"embryo", "1", "1: the bead is still forming at the nozzle", flag},
-                     computed(mark_embryo)});
+                     computed(room, mark_embryo)});
   return columns;
 }
 

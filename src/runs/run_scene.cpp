@@ -99,9 +99,10 @@ std::map<std::string, std::string> build_environment() {
           {"threads", std::to_string(omp_get_max_threads())}};
 }
 
-RunResult run_scene(const Scene& scene, const fs::path& path, RunOptions options) {
+RunResult run_scene(Scene scene, const fs::path& path, RunOptions options) {
   const ThreadCount threads(options.threads ? options.threads : scene.config.run.threads);
   const auto simulation = build_simulation(scene, std::move(options.extras));
+  scene.chain = {};
   Provenance provenance{.scene_file = options.scene_file,
                         .scene_given = scene.given,
                         .scene_resolved = resolved_toml(scene.config),

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <utility>
 
 #include "chain_formats.hpp"
 
@@ -12,26 +13,29 @@ namespace ehdjet {
 ChainBeads read_chain_hdf5(const std::filesystem::path& file, std::optional<double> time) {
   const FrameReader run(file);
   const std::size_t index = run.nearest_frame(time);
-  const Frame frame = run.frame(index);
+  Frame frame = run.frame(index);
   ChainBeads beads;
-  const RunTable::Column* embryo = frame.find("embryo"); // is no bead of a chain
-  const auto without_embryo = [&](std::vector<double> values) {
-    for (std::size_t i = frame.rows(); embryo != nullptr && i-- > 0;)
-      if (embryo->values[i] != 0)
-        values.erase(values.begin() + static_cast<std::ptrdiff_t>(i));
+  // What is read is moved, so that a long chain is not in memory twice.
+  const RunTable::Column* marked = frame.find("embryo"); // is no bead of a chain
+  const std::vector<double> embryo =
+      marked != nullptr ? marked->values : std::vector<double>();
+  const auto without_embryo = [&embryo](std::vector<double> values) {
+    for (std::size_t i = embryo.size(); i-- > 0;)
+      if (embryo[i] != 0) values.erase(values.begin() + static_cast<std::ptrdiff_t>(i));
     return values;
   };
   for (const auto& column : chain_columns()) {
-    const RunTable::Column* given = frame.find(column.hdf5);
-    if (given == nullptr)
+    const auto given =
+        std::ranges::find(frame.columns, column.hdf5, &RunTable::Column::name);
+    if (given == frame.columns.end())
       throw InputError(
           fmt::format("{} has no dataset /beads/{}", file.string(), column.hdf5));
-    beads.*column.values = without_embryo(given->values);
+    beads.*column.values = without_embryo(std::move(given->values));
   }
-  for (const RunTable::Column& c : frame.columns) // the others
+  for (RunTable::Column& c : frame.columns) // the others
     if (std::ranges::find(chain_columns(), c.name, &ChainColumn::hdf5)
         == chain_columns().end())
-      beads.others[csv_name(c.name, c.unit)].values = without_embryo(c.values);
+      beads.others[csv_name(c.name, c.unit)].values = without_embryo(std::move(c.values));
   check_chain(beads, [&](std::size_t bead, std::string_view) {
     return fmt::format("{}: frame {} (t = {} s), bead {}", file.string(), index, frame.time,
                        bead);
