@@ -70,12 +70,39 @@ void Column::append(std::span<const double> values) {
 void Column::append_bytes(const void* values, std::size_t rows) {
   const auto* from = static_cast<const unsigned char*>(values);
   while (rows > 0) {
+    if (const std::size_t chunks = rows / chunk_rows_; rows_ == 0 && chunks > 1) {
+      append_chunks(from, chunks);
+      from += chunks * chunk_.size(), rows -= chunks * chunk_rows_;
+      continue;
+    }
     const std::size_t part = std::min(rows, chunk_rows_ - rows_);
     std::memcpy(chunk_.data() + rows_ * row_size_, from, part * row_size_);
     from += part * row_size_, rows -= part, rows_ += part;
     if (rows_ < chunk_rows_) continue;
     write_chunk();
     first_ += chunk_rows_, rows_ = written_ = 0;
+  }
+}
+
+// The library packs one chunk at a time, which takes longer than an evaluation for many beads.
+void Column::append_chunks(const unsigned char* values, std::size_t chunks) {
+  constexpr std::size_t at_once = 32;
+  std::vector<hdf5::PackedChunk> packed(std::min(chunks, at_once),
+                                        hdf5::PackedChunk(chunk_.size()));
+  for (std::size_t done = 0; done < chunks; done += packed.size()) {
+    const std::size_t count = std::min(packed.size(), chunks - done);
+    const unsigned char* from = values + done * chunk_.size();
+    bool failed = false;
+#pragma omp parallel for schedule(dynamic) reduction(|| : failed)
+    for (std::size_t k = 0; k < count; ++k)
+      failed = !packed[k].pack(from + k * chunk_.size(), row_size_) || failed;
+    if (failed) throw hdf5::Failure("cannot deflate a chunk");
+    for (std::size_t k = 0; k < count; ++k) {
+      const hsize_t end = first_ + chunk_rows_;
+      hdf5::check(H5Dset_extent(*dataset_, &end));
+      packed[k].write(*dataset_, first_);
+      first_ += chunk_rows_;
+    }
   }
 }
 

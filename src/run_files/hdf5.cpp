@@ -1,9 +1,12 @@
 #include "hdf5.hpp"
 
 #include <memory>
+#include <zlib.h>
 
 namespace ehdjet::hdf5 {
 namespace {
+
+constexpr int deflate_level = 4;
 
 herr_t keep_description(unsigned depth, const H5E_error2_t* error, void* text) {
   if (depth == 0 && error->desc != nullptr) *static_cast<std::string*>(text) = error->desc;
@@ -140,7 +143,7 @@ Handle create_rows(hid_t group, const char* name, hid_t type, hsize_t chunk_rows
   check(H5Pset_obj_track_times(properties, false)); // the same run gives the same bytes
   if (packing == Packing::deflate) {
     check(H5Pset_shuffle(properties));
-    check(H5Pset_deflate(properties, 4));
+    check(H5Pset_deflate(properties, deflate_level));
     check(H5Pset_chunk_cache(access, 0, 0, 1)); // Column keeps the chunk in memory
   }
   return {H5Dcreate2(group, name, type, space, H5P_DEFAULT, properties, access), H5Dclose};
@@ -149,6 +152,27 @@ Handle create_rows(hid_t group, const char* name, hid_t type, hsize_t chunk_rows
 hsize_t length(hid_t dataset) {
   const Handle space(H5Dget_space(dataset), H5Sclose);
   return static_cast<hsize_t>(check(H5Sget_simple_extent_npoints(space)));
+}
+
+PackedChunk::PackedChunk(std::size_t bytes)
+    : shuffled_(bytes)
+    , packed_(::compressBound(bytes)) {}
+
+// The filters of the data set: first bytes of all rows, second bytes of all rows, ..., deflated.
+bool PackedChunk::pack(const unsigned char* rows, std::size_t row_size) {
+  const std::size_t count = shuffled_.size() / row_size;
+  for (std::size_t byte = 0; byte < row_size; ++byte)
+    for (std::size_t i = 0; i < count; ++i)
+      shuffled_[byte * count + i] = rows[i * row_size + byte];
+  uLongf size = packed_.size();
+  const int status =
+      ::compress2(packed_.data(), &size, shuffled_.data(), shuffled_.size(), deflate_level);
+  size_ = size;
+  return status == Z_OK;
+}
+
+void PackedChunk::write(hid_t dataset, hsize_t first) const {
+  check(H5Dwrite_chunk(dataset, H5P_DEFAULT, 0, &first, size_, packed_.data()));
 }
 
 void write_rows(hid_t dataset, hid_t type, hsize_t first, hsize_t rows,

@@ -2,6 +2,7 @@
 
 #include <hdf5.h>
 
+#include <cstddef>
 #include <cstdint>
 #include <stdexcept>
 #include <string>
@@ -85,6 +86,20 @@ enum class Packing { none, deflate };
 Handle create_rows(hid_t group, const char* name, hid_t type, hsize_t chunk_rows,
                    Packing packing);
 hsize_t length(hid_t dataset);
+/// A full chunk as a data set with Packing::deflate stores it. Unlike the library, which does the same in
+/// `write_rows`, it may be used by several threads at once.
+class PackedChunk {
+public:
+  explicit PackedChunk(std::size_t bytes);
+  /// `rows` of that many bytes, `row_size` bytes each. Returns whether it succeeded.
+  bool pack(const unsigned char* rows, std::size_t row_size);
+  /// Makes it the rows from `first` on, which the data set must have.
+  void write(hid_t dataset, hsize_t first) const;
+
+private:
+  std::vector<unsigned char> shuffled_, packed_;
+  std::size_t size_ = 0;
+};
 /// Writes or reads the rows first .. first + rows - 1, which the data set must have.
 void write_rows(hid_t dataset, hid_t type, hsize_t first, hsize_t rows, const void* values);
 template <class T>

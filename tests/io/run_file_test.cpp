@@ -1,4 +1,5 @@
 #include "ehdjet/core/error.hpp"
+#include "ehdjet/core/thread_count.hpp"
 #include "ehdjet/io/records.hpp"
 #include "ehdjet/run_files/run_file.hpp"
 #include "ehdjet/run_files/run_reader.hpp"
@@ -296,6 +297,36 @@ TEST(RunFile, is_readable_at_every_flush_while_it_grows) {
     ASSERT_EQ(run.frame_times().size(), k + 1);
     EXPECT_EQ(run.attribute("status"), "running");
     expect_same(run.frame(k), fabricated_jet(k));
+  }
+}
+
+// Chunks that are complete at once are packed by all threads, not by the HDF5 library, which reads
+// them all the same.
+TEST(RunFile, columns_of_many_beads_are_read_back_whatever_the_number_of_threads) {
+  constexpr std::size_t chunk = 256;
+  for (const std::size_t threads : {1U, 3U}) {
+    const ThreadCount count(threads);
+    const ScratchFolder folder;
+    RunFile file(folder / "run.h5", false, Provenance{}, 1e9);
+    Column& real = file.add_column("budget", {"real", "m", "", ColumnType::real}, chunk);
+    Column& flag = file.add_column("budget", {"flag", "1", "", ColumnType::flag}, chunk);
+    std::vector<double> reals, flags;
+    // Whole chunks, on top of a chunk that has been begun, a single one, more than are packed at once.
+    for (const std::size_t rows : {3 * chunk, chunk / 2, 5 * chunk + 7, std::size_t{1},
+                                   chunk, 100 * chunk, 2 * chunk - 8}) {
+      const std::size_t first = reals.size();
+      for (std::size_t i = first; i < first + rows; ++i) {
+        reals.push_back(std::sin(0.01 * static_cast<double>(i)));
+        flags.push_back(i % 3 == 0 ? 1 : 0);
+      }
+      file.write([&] {
+        real.append(std::span(reals).subspan(first));
+        flag.append(std::span(flags).subspan(first));
+      });
+      file.flush();
+      EXPECT_EQ(RunReader(folder / "run.h5").column("budget", "real"), reals) << rows;
+      EXPECT_EQ(RunReader(folder / "run.h5").column("budget", "flag"), flags) << rows;
+    }
   }
 }
 

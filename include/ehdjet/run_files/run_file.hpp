@@ -31,7 +31,8 @@ struct ColumnInfo {
 /// A one-dimensional data set of a run file, to which rows are appended.
 ///
 /// Rows are collected in memory and written one chunk at a time. `flush` also writes the incomplete
-/// chunk, which is written again when it has grown. Memory is allocated only by the constructor.
+/// chunk, which is written again when it has grown. Many chunks at once are packed by all threads. Only
+/// then is memory allocated outside the constructor.
 /// Rows may be appended only within `RunFile::write`, which handles failures.
 class Column {
 public:
@@ -46,6 +47,7 @@ public:
 
 private:
   void append_bytes(const void* values, std::size_t rows);
+  void append_chunks(const unsigned char* values, std::size_t chunks);
   void write_chunk();
 
   std::unique_ptr<hdf5::Handle> dataset_;
