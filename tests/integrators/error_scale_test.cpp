@@ -1,4 +1,6 @@
 #include "ehdjet/core/error.hpp"
+#include "ehdjet/core/parallel.hpp"
+#include "ehdjet/core/thread_count.hpp"
 #include "ehdjet/integrators/error_scale.hpp"
 #include "ehdjet/integrators/step_size_control.hpp"
 
@@ -50,6 +52,32 @@ TEST(ErrorScale, no_norm_accepts_a_nan_wherever_it_stands) {
       EXPECT_EQ(s.worst(error, y0, y1), i);
       error[i] = 1e-9, state[i] = nan;
       EXPECT_FALSE(s.norm(error, y0, state) <= 1) << "in the state " << i;
+    }
+  }
+}
+
+// Of a long vector all threads look at a part; the parts know nothing of where columns end.
+TEST(ErrorScale, rows_behind_the_judged_ones_do_not_count_in_a_long_vector) {
+  const std::size_t rows = parallel_from + 77, judged = rows - 5000;
+  std::vector<double> error(2 * rows), y(2 * rows), short_error, short_y;
+  for (std::size_t i = 0; i < 2 * rows; ++i) {
+    const bool counts = i % rows < judged;
+    y[i] = counts ? std::cos(0.1 * static_cast<double>(i)) : nan;
+    error[i] = counts ? 1e-3 * std::sin(static_cast<double>(i)) : infinity;
+    if (counts) short_error.push_back(error[i]), short_y.push_back(y[i]);
+  }
+  for (const bool root_mean_square : {false, true}) {
+    ErrorScale s = scale;
+    s.root_mean_square = root_mean_square;
+    const double whole = s.norm(short_error, short_y, short_y);
+    EXPECT_NEAR(s.norm(error, y, y, judged) / whole, 1, 1e-13) << root_mean_square;
+    const double alone = [&] {
+      const ThreadCount count(1);
+      return s.norm(error, y, y, judged);
+    }();
+    for (const std::size_t threads : {2U, 3U}) {
+      const ThreadCount count(threads);
+      EXPECT_EQ(s.norm(error, y, y, judged), alone) << threads;
     }
   }
 }
