@@ -9,8 +9,8 @@ namespace {
 struct Avx512 {
   typedef double Vector __attribute__((vector_size(64)));
   typedef long long Mask __attribute__((vector_size(64)));
-  // This shape of the tile was the fastest of six, although not all values stay in registers.
-  static constexpr int lanes = 8, targets = 4, vectors = 2, degree = 3;
+  // With this shape of the tile all values stay in registers.
+  static constexpr int lanes = 8, targets = 2, vectors = 2, degree = 3;
 
   // A full mask gives the same instructions. For the plain forms GCC 12 warns of an uninitialised
   // value (GCC bug 105593).

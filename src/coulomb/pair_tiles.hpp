@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <utility>
 
 #include "pair_kernel.hpp"
 
@@ -49,21 +48,11 @@ template <class Simd>
 EHDJET_INLINE void store(double* p, const VectorOf<Simd>& v) {
   *reinterpret_cast<VectorOf<Simd>*>(p) = v;
 }
-template <class Vector, int... lane>
-EHDJET_INLINE double sum_of_halves(const Vector& v,
-                                   std::integer_sequence<int, lane...> /*half*/) {
-  constexpr int half = sizeof...(lane);
-  if constexpr (half == 1)
-    return v[0] + v[1];
-  else
-    return sum_of_halves(__builtin_shufflevector(v, v, lane...)
-                             + __builtin_shufflevector(v, v, (lane + half)...),
-                         std::make_integer_sequence<int, half / 2>{});
-}
-/// The sum of all lanes.
 template <class Simd>
 EHDJET_INLINE double sum(const VectorOf<Simd>& v) {
-  return sum_of_halves(v, std::make_integer_sequence<int, Simd::lanes / 2>{});
+  double s = v[0];
+  for (int lane = 1; lane < Simd::lanes; ++lane) s += v[lane];
+  return s;
 }
 
 /// A few beads, each repeated in all lanes, and the fields at their places.

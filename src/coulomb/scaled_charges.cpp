@@ -2,8 +2,10 @@
 
 #include "ehdjet/core/constants.hpp"
 #include "ehdjet/core/error.hpp"
+#include "ehdjet/core/parallel.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace ehdjet::detail {
@@ -18,14 +20,17 @@ int scale_exponent(double largest, int exponent) {
   return std::min(exponent - e, 1000);
 }
 
-/// For fewer charges, starting the threads takes longer than copying.
-constexpr std::size_t parallel_from = 30'000;
-
 double largest_magnitude(std::span<const double> v) {
-  double largest = 0;
-#pragma omp parallel for simd reduction(max : largest) if (v.size() >= parallel_from)
-  for (std::size_t i = 0; i < v.size(); ++i) largest = std::max(largest, std::abs(v[i]));
-  return largest;
+  std::array<double, most_parts> largest{};
+  for_numbered_parts(0, v.size(),
+                     [&](std::size_t part, std::size_t begin, std::size_t end) {
+                       double most = 0;
+#pragma omp simd reduction(max : most)
+                       for (std::size_t i = begin; i < end; ++i)
+                         most = std::max(most, std::abs(v[i]));
+                       largest[part] = most;
+                     });
+  return *std::ranges::max_element(largest);
 }
 
 } // namespace
@@ -96,12 +101,14 @@ void ScaledCharges::fill(const Group& g) {
     double* out = column(k) + g.begin;
     const double *in = original[k].data(), s = k < 3 ? scale_ : charge_scale_;
     if (g.order.empty()) {
-#pragma omp parallel for simd schedule(static) if (n >= parallel_from)
-      for (std::size_t i = 0; i < n; ++i) out[i] = s * in[i];
+      for_parts(0, n, [=](std::size_t begin, std::size_t end) {
+#pragma omp simd
+        for (std::size_t i = begin; i < end; ++i) out[i] = s * in[i];
+      });
     } else {
-      const std::uint32_t* from = g.order.data();
-#pragma omp parallel for schedule(static) if (n >= parallel_from)
-      for (std::size_t i = 0; i < n; ++i) out[i] = s * in[from[i]];
+      for_parts(0, n, [=, from = g.order.data()](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) out[i] = s * in[from[i]];
+      });
     }
   }
   if (!any_rests_) return;

@@ -1,5 +1,7 @@
 #include "ehdjet/multirate/predictor.hpp"
 
+#include "ehdjet/core/parallel.hpp"
+
 namespace ehdjet {
 
 void Predictor::start(const JetState& jet, std::span<const double> rate,
@@ -31,10 +33,11 @@ void Predictor::places(double t, std::size_t first, Vec3View out) const {
                  *a = rate_.data() + (c + 3) * beads_ + first,
                  *j = jerk_.data() + (c + 3) * beads_ + first;
     double* place = columns[c];
-    const std::size_t count = beads_ - first;
-#pragma omp parallel for simd if (count > 8192)
-    for (std::size_t i = 0; i < count; ++i)
-      place[i] = y[i] + s * (v[i] + s / 2 * (a[i] + s / 3 * j[i]));
+    for_parts(0, beads_ - first, [=](std::size_t begin, std::size_t end) {
+#pragma omp simd
+      for (std::size_t i = begin; i < end; ++i)
+        place[i] = y[i] + s * (v[i] + s / 2 * (a[i] + s / 3 * j[i]));
+    });
   }
 }
 

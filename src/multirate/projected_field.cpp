@@ -1,6 +1,7 @@
 #include "ehdjet/multirate/projected_field.hpp"
 
 #include "ehdjet/core/error.hpp"
+#include "ehdjet/core/parallel.hpp"
 
 #include <algorithm>
 
@@ -25,8 +26,10 @@ void ProjectedField::add(double place, double weight, std::span<const double> fi
   for (std::size_t d = 0; d < degrees; ++d) {
     const double w = static_cast<double>(2 * d + 1) * weight * p[d];
     double* c = coefficient_.data() + d * size;
-#pragma omp parallel for simd if (size > 16384)
-    for (std::size_t i = 0; i < size; ++i) c[i] += w * e[i];
+    for_parts(0, size, [=](std::size_t begin, std::size_t end) {
+#pragma omp simd
+      for (std::size_t i = begin; i < end; ++i) c[i] += w * e[i];
+    });
   }
 }
 
@@ -42,11 +45,13 @@ void ProjectedField::add_force(const Stage& stage, Vec3View force) {
                  *c2 = c1 + 3 * beads_, *c3 = c2 + 3 * beads_;
     double* f = out[c];
     const std::size_t first = first_;
-#pragma omp parallel for simd if (beads_ > 8192)
-    for (std::size_t k = targets.begin; k < targets.end; ++k) {
-      const std::size_t i = k - first;
-      f[k] += q[k] * (p[0] * c0[i] + p[1] * c1[i] + p[2] * c2[i] + p[3] * c3[i]);
-    }
+    for_parts(targets.begin, targets.end, [=](std::size_t begin, std::size_t end) {
+#pragma omp simd
+      for (std::size_t k = begin; k < end; ++k) {
+        const std::size_t i = k - first;
+        f[k] += q[k] * (p[0] * c0[i] + p[1] * c1[i] + p[2] * c2[i] + p[3] * c3[i]);
+      }
+    });
   }
 }
 
