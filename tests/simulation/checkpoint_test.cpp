@@ -211,6 +211,14 @@ TEST(Checkpoint, keeps_the_pace_of_the_landings) {
   }
 }
 
+TEST(Checkpoint, keeps_the_methods_of_both_parts_of_a_stiff_jet) {
+  Scene scene = refined_case(0.4 * cm);
+  integrate(scene, "two-rate", 1e-4);
+  scene.config.viscoelasticity = ViscoelasticityConfig{1e8, pvp::viscosity};
+  const auto whole = expect_same_bits(scene, 8e-3, 1.1e-3);
+  EXPECT_GT(whole.simulation->statistics().two_rates->steps, 5U);
+}
+
 TEST(Checkpoint, keeps_the_times_of_the_refinements) {
   Scene scene = refined_case(0.2 * cm, 2e-4);
   EXPECT_GT(expect_same_bits(scene, 4e-3, 5e-4).simulation->statistics().refinements, 2U);

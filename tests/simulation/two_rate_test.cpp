@@ -228,6 +228,72 @@ TEST(TwoRate, an_event_inside_a_macro_step_ends_it) {
   EXPECT_LE(largest_distance(stopped->jet(), run(scene, 6e-3)->jet()), 2e-5 * cm);
 }
 
+// Landed beads act on no other bead there. With a collector at 4 cm the inner beads notice.
+TEST(TwoRate, converges_with_the_tolerance_above_a_grounded_collector_nearby) {
+  Scene scene = refined_case(0.1 * cm);
+  scene.config.collector = CollectorConfig{.distance = 4 * cm};
+  scene.config.field =
+      FieldConfig{.potential = {}, .strength = pvp::potential / pvp::distance};
+  const auto exact = run(with_method(scene, "dormand-prince", 1e-9), 5.5e-3);
+  ASSERT_GT(exact->statistics().landings, 20U);
+  double before = 0;
+  for (const double rtol : {1e-5, 1e-7}) {
+    const auto two = run(with_method(scene, "two-rate", rtol), 5.5e-3);
+    EXPECT_GT(two->statistics().two_rates->steps, 5U);
+    EXPECT_EQ(two->statistics().landings, exact->statistics().landings);
+    const double error = largest_distance(two->jet(), exact->jet());
+    EXPECT_LE(error, 2e-4 * cm);
+    if (before > 0) {
+      EXPECT_LE(error, before / 4);
+    }
+    before = error;
+  }
+}
+
+// What has passed the collector is softened no longer for those that have not.
+TEST(TwoRate, softened_pairs_end_at_the_collector) {
+  Scene scene = jet_k(0.02 * cm, 0.2 * cm);
+  const auto end = [&](const std::string& method, double rtol) {
+    return run(with_method(scene, method, rtol), 13e-3);
+  };
+  const auto exact = end("dormand-prince", 1e-8), two = end("two-rate", 1e-6);
+  ASSERT_GT(exact->statistics().landings, 20U);
+  ASSERT_GT(two->statistics().two_rates->steps, 20U);
+  EXPECT_LE(largest_distance(two->jet(), exact->jet()), 2e-4 * cm);
+}
+
+TEST(TwoRate, every_third_bead_is_an_impurity_also_after_rejected_steps) {
+  Scene scene = case_one();
+  scene.config.varicosity =
+      VaricosityConfig{.every = 3, .factor = 1.3, .mass = true, .volume = true};
+  const auto one = run(with_method(scene, "dormand-prince", 1e-6), 12e-3),
+             two = run(with_method(scene, "two-rate", 1e-5), 12e-3);
+  ASSERT_GT(two->statistics().rejected, 0U);
+  EXPECT_EQ(two->ledger().inserted_beads, one->ledger().inserted_beads);
+  EXPECT_EQ(two->jet().mass, one->jet().mass);
+}
+
+TEST(TwoRate, no_step_is_longer_than_it_may_be) {
+  Scene scene = with_method(refined_case(0.4 * cm), "two-rate", 1e-4);
+  scene.config.integrator.max_step = 7e-5;
+  EXPECT_LE(run(scene, 6e-3)->statistics().longest_step, 7e-5 * (1 + 1e-12));
+}
+
+// Around the number of beads from which on there are two rates.
+TEST(TwoRate, a_short_jet_changes_to_and_fro) {
+  Scene scene = refined_case(0.4 * cm);
+  scene.config.collector = CollectorConfig{.distance = 3 * cm};
+  scene.config.field =
+      FieldConfig{.potential = {}, .strength = pvp::potential / pvp::distance};
+  scene.config.integrator.method = "two-rate";
+  scene.config.integrator.inner_beads = 28;
+  const auto two = run(scene, 12e-3);
+  ASSERT_GT(two->ledger().removed_beads, 20U);
+  expect_kept_sums(*two, 1e-12);
+  const auto one = run(with_method(scene, "dormand-prince", 1e-8), 12e-3);
+  EXPECT_LE(largest_distance(two->jet(), one->jet()), 1e-3 * cm);
+}
+
 TEST(TwoRate, auto_chooses_it_once_the_jet_is_long_enough) {
   const auto simulation = run(with_method(refined_case(0.2 * cm), "auto", 1e-5), 8e-3);
   const RunStatistics& s = simulation->statistics();
