@@ -163,15 +163,30 @@ struct Job {
 Scene scene_of(const BenchOptions& options, const Table2Row& row, std::string_view rates) {
   std::vector<std::string> overrides = overrides_of(options);
   if (row.processors == 0)
-    for (const auto& [key, value] : {std::pair{"refinement.length", row.length},
-                                     {"nozzle.link_length", std::min(2e-4, row.length / 2)}})
+    for (const auto& [key, value] :
+         {std::pair{"refinement.length", row.length},
+          {"nozzle.link_length", std::min(2e-4, row.length / 2)}})
       overrides.push_back(fmt::format("{}={}", key, value));
   if (rates == "two") overrides.emplace_back("integrator.method=\"two-rate\"");
   return read_scene(
       std::filesystem::path(options.scenes) / fmt::format("{}.toml", row.scene), overrides);
 }
 
+void check_method(const BenchOptions& options) {
+  if (!options.method) return;
+  if (options.rates != "two"
+      && (*options.method == "auto" || *options.method == "two-rate"))
+    throw InputError(fmt::format(
+        "--method {} has two rates. The rows with one rate need a named method; "
+        "--rates two leaves them out",
+        *options.method));
+  if (options.rates == "two")
+    throw InputError(
+        "--method is for the rows with one rate, which --rates two leaves out");
+}
+
 void bench_table2(const BenchOptions& options) {
+  check_method(options);
   std::vector<const Table2Row*> lengths;
   for (const Table2Row& row : table2)
     if (options.rows.empty() || is_chosen(options, row)) lengths.push_back(&row);

@@ -38,6 +38,8 @@ TEST(BenchTable2, goes_to_finer_meshes_than_the_paper_and_states_the_growth) {
               AllOf(HasSubstr("\n0.2,2,"), HasSubstr("\n0.1,2,"), HasSubstr(",,,\n")));
   EXPECT_THAT(o.out, HasSubstr("grows with the beads to the power"));
   EXPECT_EQ(command(folder, table2 + "--rates three").exit_code, 2);
+  EXPECT_EQ(command(folder, table2 + "--method auto").exit_code, 2);
+  EXPECT_EQ(command(folder, table2 + "--rates two --method rk4").exit_code, 2);
 }
 
 TEST(BenchTable2, refuses_what_it_does_not_know_and_overwrites_nothing) {

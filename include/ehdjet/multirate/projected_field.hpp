@@ -11,7 +11,7 @@ namespace ehdjet {
 /// The field of the inner beads at the downstream ones within a macro step, projected on Legendre
 /// polynomials of degree 0 ... 3 in time (model 6.1). The charge at the nozzle grows in ramps, one per
 /// birth, which the stages of a macro step would sample by chance; the projection keeps its
-/// impulse and first moments exactly.
+/// impulse and first moments, as far as the quadrature has them.
 class ProjectedField final : public ForceTerm {
 public:
   static constexpr std::size_t degrees = 4;
