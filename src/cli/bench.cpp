@@ -172,6 +172,33 @@ Scene scene_of(const BenchOptions& options, const Table2Row& row, std::string_vi
       std::filesystem::path(options.scenes) / fmt::format("{}.toml", row.scene), overrides);
 }
 
+Row run_job(const BenchOptions& options, const Job& job, std::size_t threads) {
+  const double end = job.scene.config.run.end_time;
+  // The jets of the table are stationary after 35 ms.
+  const double from = options.stationary_from.value_or(std::min(0.035, end / 2));
+  const auto run = [&](std::size_t p) {
+    std::optional<Progress> progress;
+    if (!options.quiet) {
+      fmt::print(stderr, "L~ = {}{}, {} rate{}, {} thread{}, {} s\n", job.row->name,
+                 job.row->length == 0 ? "" : " cm", job.rates,
+                 job.rates == "one" ? "" : "s", p, p == 1 ? "" : "s", end);
+      progress.emplace(0.0, end);
+    }
+    const InterruptGuard interrupt;
+    return run_table2(job.scene, end, from, p, {}, [&](const Simulation& s) {
+      if (progress) progress->show(s);
+      if (const char* signal = InterruptGuard::signal_name())
+        throw RunError(fmt::format("stopped by {}", signal));
+    });
+  };
+  Row row{
+      .paper = job.row, .rates = job.rates, .end_time = end, .serial = {}, .parallel = {}};
+  if (!options.no_serial && threads > 1) row.serial = run(1);
+  row.parallel = run(threads);
+  if (threads == 1) row.serial = row.parallel;
+  return row;
+}
+
 void check_method(const BenchOptions& options) {
   if (!options.method) return;
   if (options.rates != "two"
@@ -203,35 +230,7 @@ void bench_table2(const BenchOptions& options) {
       options.threads.value_or(static_cast<std::size_t>(omp_get_max_threads()));
 
   std::vector<Row> rows;
-  for (const Job& job : jobs) {
-    const double end = job.scene.config.run.end_time;
-    // The jets of the table are stationary after 35 ms.
-    const double from = options.stationary_from.value_or(std::min(0.035, end / 2));
-    const auto run = [&](std::size_t p) {
-      std::optional<Progress> progress;
-      if (!options.quiet) {
-        fmt::print(stderr, "L~ = {}{}, {} rate{}, {} thread{}, {} s\n", job.row->name,
-                   job.row->length == 0 ? "" : " cm", job.rates,
-                   job.rates == "one" ? "" : "s", p, p == 1 ? "" : "s", end);
-        progress.emplace(0.0, end);
-      }
-      const InterruptGuard interrupt;
-      return run_table2(job.scene, end, from, p, {}, [&](const Simulation& s) {
-        if (progress) progress->show(s);
-        if (const char* signal = InterruptGuard::signal_name())
-          throw RunError(fmt::format("stopped by {}", signal));
-      });
-    };
-    Row row{.paper = job.row,
-            .rates = job.rates,
-            .end_time = end,
-            .serial = {},
-            .parallel = {}};
-    if (!options.no_serial && threads > 1) row.serial = run(1);
-    row.parallel = run(threads);
-    if (threads == 1) row.serial = row.parallel;
-    rows.push_back(row);
-  }
+  for (const Job& job : jobs) rows.push_back(run_job(options, job, threads));
   write_csv(csv, rows, threads);
   const std::string text = markdown(rows, threads);
   table.print("{}\n{}\n", text, provenance());
