@@ -31,6 +31,28 @@ private:
   Mean& mean_;
 };
 
+/// Beads in the middle of equal intervals: macro steps are long, and beads are born and land inside.
+class BeadsInside final : public Observer {
+public:
+  BeadsInside(double from, Mean& all, Mean& stationary)
+      : from_(from)
+      , all_(all)
+      , stationary_(stationary) {}
+  [[nodiscard]] double next_time() const override { return (count_ + 0.5) * interval; }
+  void observe(const JetSnapshot& s) override {
+    const auto links = static_cast<double>(s.columns.beads - 1);
+    all_.add(links, 1);
+    if (s.time >= from_) stationary_.add(links, 1);
+    ++count_;
+  }
+
+private:
+  static constexpr double interval = 1e-4; // [s]
+  double from_;
+  double count_ = 0;
+  Mean &all_, &stationary_;
+};
+
 } // namespace
 
 Table2Run run_table2(Scene scene, double end_time, double stationary_from,
@@ -45,10 +67,15 @@ Table2Run run_table2(Scene scene, double end_time, double stationary_from,
 
   double time = 0; // at the end of the last step
   auto beads = static_cast<double>(simulation->jet().links());
+  const bool inside = simulation->statistics().two_rates.has_value();
+  if (inside)
+    simulation->add(std::make_shared<BeadsInside>(stationary_from, all, stationary));
   simulation->after_each_step([&](const Simulation& s) {
     const double now = s.jet().time;
-    all.add(beads, now - time),
-        stationary.add(beads, now - std::max(time, stationary_from));
+    if (!inside) {
+      all.add(beads, now - time);
+      stationary.add(beads, now - std::max(time, stationary_from));
+    }
     time = now, beads = static_cast<double>(s.jet().links());
     if (after_step) after_step(s);
   });
