@@ -85,9 +85,7 @@ std::optional<double> Refinement::locate(const DenseStep& step) {
 }
 
 double Refinement::next_time(double t) const {
-  Schedule after = schedule_;
-  while (after.next() <= t * (1 + round_off)) after.advance();
-  return after.next();
+  return schedule_.next_after(t);
 }
 
 void Refinement::pass(double t) {
@@ -124,10 +122,7 @@ std::optional<double> LinkCuts::locate(const DenseStep& step) {
 }
 
 double LinkCuts::next_time(double t) const {
-  if (!schedule_) return Event::next_time(t);
-  Schedule after = *schedule_;
-  while (after.next() <= t * (1 + round_off)) after.advance();
-  return after.next();
+  return schedule_ ? schedule_->next_after(t) : Event::next_time(t);
 }
 
 void LinkCuts::pass(double t) {

@@ -67,6 +67,17 @@ double closest_approach(const Vec3& d0, const Vec3& d1) {
   return (d0 + s * e).squaredNorm();
 }
 
+/// Beads at the end of a chain have left it. Within a macro step they are so many that a ledger that waits
+/// for its end would be late.
+void count_removed(const JetState& jet, std::size_t left, Ledger& ledger) {
+  for (std::size_t k = jet.beads(); k-- > left;) {
+    ++ledger.removed_beads;
+    ledger.removed_mass += jet.mass[k];
+    ledger.removed_charge += jet.charge[k];
+    ledger.removed_volume += jet.volume[k];
+  }
+}
+
 /// An observer made of a function.
 class AfterEachStep final : public Observer {
 public:
@@ -465,7 +476,9 @@ void Simulation::show_until(const DenseStep& step, double end) {
         if (step.keeps_chain()) dynamics_->prescribe(t, seen.y);
         seen.time = t;
         if (dynamics_->feeds()) feed(seen, ledger);
+        const auto chain = step.keeps_chain() ? std::nullopt : std::optional(seen);
         for (const auto& e : events_) e->anticipate(t, seen);
+        if (chain) count_removed(*chain, seen.beads(), ledger);
         show(*o, {t, std::as_const(seen).columns(), seen, ledger, statistics_});
       } else {
         snapshot_.resize(jet_.y.size());

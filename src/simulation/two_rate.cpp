@@ -22,8 +22,8 @@ std::size_t near_beads(std::size_t inner_beads, double rtol) {
   const double digits = std::max(0.0, -std::log10(rtol) - 5);
   return std::max(16 + static_cast<std::size_t>(std::lround(8 * digits)), inner_beads / 2);
 }
-/// The first downstream bead is integrated twice: with the inner beads, where its neighbours but one are
-/// predicted, and downstream. By so many tolerances its two states may differ. The error of the last
+/// The first downstream bead is integrated twice: with the inner beads, where all beads from
+/// the second one below it on are predicted, and downstream. By so many tolerances its two states may differ. The error of the last
 /// inner bead is about ten times smaller.
 constexpr double allowed_mismatch = 4;
 /// Of the quadrature in time of the inner beads' field.
@@ -222,24 +222,27 @@ void TwoRate::prepare(const JetState& jet) {
 }
 
 void TwoRate::evaluate_alone(const JetState& jet) {
-  JetDynamics& downstream = *parts_.downstream;
   parts_.projected->clear();
-  downstream.lead(
-      {.head = inner_beads_, .guide = parts_.record.get(), .passed_fly_on = true});
-  downstream.bind(jet);
+  bind_downstream(jet);
   alone_.resize(jet.y.size());
-  downstream.evaluate(jet.time, jet.y, alone_);
+  parts_.downstream->evaluate(jet.time, jet.y, alone_);
+}
+
+void TwoRate::bind_downstream(const JetState& jet) {
+  parts_.downstream->lead(
+      {.head = inner_beads_, .guide = parts_.record.get(), .passed_fly_on = true});
+  parts_.downstream->bind(jet);
 }
 
 /// The sum of what the downstream beads and the inner ones do to the former.
 void TwoRate::set_rate(const JetState& jet) {
   const std::size_t n = jet.beads(), m = inner_beads_;
   const auto targets = rows_of(jet.columns().position(), m, n);
-  field_.assign(3 * (n - m), 0.0);
-  add_field_of(jet, 0, m, targets, three_columns(field_, n - m));
+  buffer_.assign(3 * (n - m), 0.0);
+  const Vec3View e = three_columns(buffer_, n - m);
+  add_field_of(jet, 0, m, targets, e);
   rate_ = alone_;
   const Vec3View a = JetColumns<double>{rate_, n}.velocity();
-  const Vec3View e = three_columns(field_, n - m);
   for (std::size_t k = m; k < n; ++k) a.add(k, jet.charge[k] / jet.mass[k] * e[k - m]);
   rest_landed(jet, rate_);
 }
@@ -251,10 +254,7 @@ void TwoRate::rest_landed(const JetState& jet, std::vector<double>& rate) {
 }
 
 void TwoRate::prepare_inner(const JetState& jet, const Ledger& ledger) {
-  JetDynamics& downstream = *parts_.downstream;
-  downstream.lead(
-      {.head = inner_beads_, .guide = parts_.record.get(), .passed_fly_on = true});
-  downstream.bind(jet);
+  bind_downstream(jet);
   const std::size_t free = inner_beads_ + buffer_beads;
   distant_ = std::min(jet.beads(), free + near_beads(inner_beads_, options_.rtol));
   jet_ = &jet;

@@ -15,6 +15,12 @@ public:
       , count_(first) {}
   [[nodiscard]] double next() const { return static_cast<double>(count_) * interval_; }
   void advance() { ++count_; }
+  /// The first one of those that are left that lies behind `time`, by more than round-off.
+  [[nodiscard]] double next_after(double time) const {
+    Schedule after = *this;
+    while (after.next() <= time * (1 + 1e-12)) after.advance();
+    return after.next();
+  }
   /// Leaves out what lies before `time`.
   void skip_to(double time) {
     const double below =

@@ -102,6 +102,7 @@ private:
 
   void prepare(const JetState& jet);
   void evaluate_alone(const JetState& jet);
+  void bind_downstream(const JetState& jet);
   void set_rate(const JetState& jet);
   static void rest_landed(const JetState& jet, std::vector<double>& rate);
   void prepare_inner(const JetState& jet, const Ledger& ledger);
@@ -126,10 +127,9 @@ private:
   double h_ = 0, start_ = 0;        // of the last attempt [s]
 
   // At the start of the step, of the chain as it is then.
-  bool ready_ = false;        // what follows is known
-  bool inner_ready_ = false;  // and the inner chain stands there
-  std::vector<double> alone_; // rates of the downstream beads without the inner ones
-  std::vector<double> field_; // of the inner beads at the downstream ones, x, y, z [V/m]
+  bool ready_ = false;              // what follows is known
+  bool inner_ready_ = false;        // and the inner chain stands there
+  std::vector<double> alone_;       // rates of the downstream beads without the inner ones
   std::vector<double> rate_, jerk_; // all together, and how it changes per second
   std::vector<ExtrapolatedField> field_before_; // each piece of the record
   const JetState* jet_ = nullptr;
