@@ -81,7 +81,7 @@ TEST(TwoRate, a_refined_jet_that_lands_is_the_same_jet_for_fewer_sums) {
 TEST(TwoRate, hardly_depends_on_where_the_jet_is_cut_in_two) {
   Scene scene = with_method(refined_case(0.8 * cm), "two-rate", 1e-5);
   std::vector<JetState> jets;
-  for (const std::size_t m : {20, 24, 32}) {
+  for (const std::size_t m : {20U, 24U, 32U}) {
     scene.config.integrator.inner_beads = m;
     jets.push_back(run(scene, 12e-3)->jet());
   }
