@@ -8,6 +8,7 @@
 #include <cmath>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "support/jets.hpp"
@@ -88,7 +89,7 @@ public:
             "full_sums_per_ms,seconds_per_ms_s,error_m,tip_error,path_length_error")) {}
 
   void run() {
-    const std::size_t number = suite_.pick(3, 7);
+    const std::size_t number = suite_.pick<std::size_t>(3, 7);
     double cost = 5;
     for (std::size_t i = 0; i < number; ++i) cost += lengths[i].seconds;
     suite_.plan(cost);
@@ -153,8 +154,9 @@ private:
                    "elastic_modulus_Pa,viscosity_Pa_s,method,evaluations_per_ms,"
                    "inner_evaluations_per_ms,full_sums_per_ms,seconds_per_ms_s,error_m");
     const double from = 0.012, to = suite_.pick(0.014, 0.02);
-    for (const auto& [modulus, viscosity] :
-         {std::pair{5e3, 2.0}, {5e5, 2.0}, {5e3, 0.05}, {5e3, 20.0}}) {
+    const std::pair<double, double> fluids[] = {{5e3, 2}, {5e5, 2}, {5e3, 0.05}, {5e3, 20}};
+    for (const auto& given : fluids) {
+      const double modulus = given.first, viscosity = given.second;
       const auto fluid = [&](const std::string& method, double tolerance) {
         Scene s = jet(0.004, method, tolerance);
         s.config.viscoelasticity = ViscoelasticityConfig{modulus, viscosity};
