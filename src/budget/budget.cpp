@@ -56,7 +56,7 @@ void Budget::begin_step(const DenseStep& step,
     times.erase(std::unique(times.begin(), times.end()), times.end());
     for (const double t : times) inner_.push_back({.time = t, .event = e.get()});
   }
-  std::ranges::stable_sort(inner_, {}, &DenseStep::InnerTime::time);
+  std::ranges::sort(inner_, {}, &DenseStep::InnerTime::time);
   seen_ = step.jet;
 }
 

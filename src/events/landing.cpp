@@ -167,8 +167,9 @@ std::vector<Landing::Arrival> Landing::arrivals(const JetState& jet) const {
         const auto passed = std::ranges::find(passing_, from_end, &Arrival::from_end);
         arrived.push_back(passed != passing_.end() ? *passed : arrival_now(jet, from_end));
       });
-  std::ranges::reverse(arrived);
-  std::ranges::stable_sort(arrived, {}, &Arrival::time);
+  std::ranges::sort(arrived, [](const Arrival& a, const Arrival& b) {
+    return a.time != b.time ? a.time < b.time : a.from_end < b.from_end;
+  });
   return arrived;
 }
 
