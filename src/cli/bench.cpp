@@ -230,6 +230,7 @@ void bench_table2(const BenchOptions& options) {
       options.threads.value_or(static_cast<std::size_t>(omp_get_max_threads()));
 
   std::vector<Row> rows;
+  rows.reserve(jobs.size());
   for (const Job& job : jobs) rows.push_back(run_job(options, job, threads));
   write_csv(csv, rows, threads);
   const std::string text = markdown(rows, threads);
