@@ -168,8 +168,15 @@ Scene scene_of(const BenchOptions& options, const Table2Row& row, std::string_vi
           {"nozzle.link_length", std::min(2e-4, row.length / 2)}})
       overrides.push_back(fmt::format("{}={}", key, value));
   if (rates == "two") overrides.emplace_back("integrator.method=\"two-rate\"");
-  return read_scene(
+  Scene scene = read_scene(
       std::filesystem::path(options.scenes) / fmt::format("{}.toml", row.scene), overrides);
+  const std::string& method = scene.config.integrator.method;
+  if (rates == "one" && (method == "auto" || method == "two-rate"))
+    throw InputError(
+        fmt::format("integrator.method = \"{}\" has two rates. The rows with one rate need "
+                    "another method; --rates two leaves them out",
+                    method));
+  return scene;
 }
 
 Row run_job(const BenchOptions& options, const Job& job, std::size_t threads) {
@@ -199,21 +206,10 @@ Row run_job(const BenchOptions& options, const Job& job, std::size_t threads) {
   return row;
 }
 
-void check_method(const BenchOptions& options) {
-  if (!options.method) return;
-  if (options.rates != "two"
-      && (*options.method == "auto" || *options.method == "two-rate"))
-    throw InputError(fmt::format(
-        "--method {} has two rates. The rows with one rate need a named method; "
-        "--rates two leaves them out",
-        *options.method));
-  if (options.rates == "two")
+void bench_table2(const BenchOptions& options) {
+  if (options.method && options.rates == "two")
     throw InputError(
         "--method is for the rows with one rate, which --rates two leaves out");
-}
-
-void bench_table2(const BenchOptions& options) {
-  check_method(options);
   std::vector<const Table2Row*> lengths;
   for (const Table2Row& row : table2)
     if (options.rows.empty() || is_chosen(options, row)) lengths.push_back(&row);

@@ -80,9 +80,9 @@ std::string summary(const RunResult& result, const SceneConfig& scene,
                         cost.method->changes);
   if (cost.two_rates && cost.two_rates->steps > 0)
     text += fmt::format(
-        "  two rates     {} macro steps with {} evaluations of the {} beads at the "
+        "  two rates     {} macro steps ({}) with {} evaluations of the {} beads at the "
         "nozzle; {:.4g} Coulomb sums in all\n",
-        cost.two_rates->steps, cost.two_rates->inner_evaluations,
+        cost.two_rates->steps, cost.two_rates->method, cost.two_rates->inner_evaluations,
         cost.two_rates->inner_beads, cost.two_rates->full_sums);
   text += fmt::format("  cost          {} evaluations, {} steps, {} rejected, {:.2f} s\n",
                       cost.evaluations, cost.steps, cost.rejected, cost.wall_time);

@@ -489,6 +489,7 @@ void TwoRate::count(RunStatistics& statistics) const {
   statistics.evaluations += downstream_evaluations();
   TwoRateRecord& record = *statistics.two_rates;
   record.steps = macro_steps_, record.inner_beads = inner_beads_;
+  record.method = parts_.integrator->method_in_use();
   record.inner_evaluations = inner_evaluations_;
   record.full_sums = static_cast<double>(statistics.evaluations) + full_sums_;
 }

@@ -39,6 +39,8 @@ TEST(BenchTable2, goes_to_finer_meshes_than_the_paper_and_states_the_growth) {
   EXPECT_THAT(o.out, HasSubstr("grows with the beads to the power"));
   EXPECT_EQ(command(folder, table2 + "--rates three").exit_code, 2);
   EXPECT_EQ(command(folder, table2 + "--method auto").exit_code, 2);
+  EXPECT_EQ(command(folder, table2 + "--set 'integrator.method=\"two-rate\"'").exit_code,
+            2);
   EXPECT_EQ(command(folder, table2 + "--rates two --method rk4").exit_code, 2);
 }
 

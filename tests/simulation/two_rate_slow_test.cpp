@@ -5,6 +5,7 @@
 #include <string>
 
 #include "support/refined.hpp"
+#include "support/two_rates.hpp"
 
 // Two rates against one at a tight tolerance, where that takes seconds.
 namespace ehdjet {
@@ -16,20 +17,6 @@ Scene two_rates(double length, double rtol) {
   Scene scene = refined_case(length);
   integrate(scene, "two-rate", rtol);
   return scene;
-}
-
-struct Cost {
-  double evaluations, full_sums;
-};
-/// Per millisecond between two times.
-Cost cost_between(Simulation& simulation, double from, double to) {
-  simulation.run_until(from);
-  const RunStatistics a = simulation.statistics();
-  simulation.run_until(to);
-  const RunStatistics& b = simulation.statistics();
-  const double ms = 1e3 * (to - from);
-  return {static_cast<double>(b.evaluations - a.evaluations) / ms,
-          (b.two_rates->full_sums - a.two_rates->full_sums) / ms};
 }
 
 double distance_from_one_rate(const JetState& jet, double length, double rtol) {

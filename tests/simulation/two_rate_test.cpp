@@ -12,6 +12,7 @@
 #include "support/case_one.hpp"
 #include "support/pumped.hpp"
 #include "support/refined.hpp"
+#include "support/two_rates.hpp"
 
 // Macro steps with two rates against steps of the whole jet.
 namespace ehdjet {
@@ -22,23 +23,6 @@ using namespace test;
 Scene with_method(Scene scene, const std::string& method, double rtol) {
   integrate(scene, method, rtol);
   return scene;
-}
-
-/// Evaluations, inner evaluations and Coulomb sums per millisecond between two times.
-struct Rate {
-  double evaluations, inner, sums;
-};
-Rate rate_between(Simulation& simulation, double from, double to) {
-  simulation.run_until(from);
-  const RunStatistics a = simulation.statistics();
-  simulation.run_until(to);
-  const RunStatistics& b = simulation.statistics();
-  const double ms = 1e3 * (to - from);
-  return {
-      static_cast<double>(b.evaluations - a.evaluations) / ms,
-      static_cast<double>(b.two_rates->inner_evaluations - a.two_rates->inner_evaluations)
-          / ms,
-      (b.two_rates->full_sums - a.two_rates->full_sums) / ms};
 }
 
 // The reference is right to 1e-8 cm. Where the inner beads feel too few of the others directly, the
@@ -61,9 +45,9 @@ TEST(TwoRate, a_refined_jet_that_lands_is_the_same_jet_for_fewer_sums) {
   RefinedRun exact(with_method(scene, "dormand-prince", 1e-8));
   exact.simulation->run_until(15e-3);
   RefinedRun two(with_method(scene, "two-rate", 1e-5));
-  const Rate rate = rate_between(*two.simulation, 12e-3, 15e-3);
-  EXPECT_LE(rate.evaluations, 60);
-  EXPECT_LE(rate.sums, 95);
+  const Cost cost = cost_between(*two.simulation, 12e-3, 15e-3);
+  EXPECT_LE(cost.evaluations, 60);
+  EXPECT_LE(cost.full_sums, 95);
   EXPECT_LE(largest_distance(two.simulation->jet(), exact.simulation->jet()), 1e-3 * cm);
   EXPECT_EQ(two.records.size(), exact.records.size());
   ASSERT_EQ(two.deposit.size(), exact.deposit.size());

@@ -64,14 +64,15 @@ struct TwoRateRecord {
   std::uint64_t steps = 0;             ///< macro steps
   std::uint64_t inner_evaluations = 0; ///< of the right-hand side of the inner beads
   std::uint64_t inner_beads = 0;       ///< how many there are now
+  std::string_view method = {};        ///< of the last macro step
   /// Coulomb sums so far with everything included: pairs over all pairs of the chain.
   double full_sums = 0;
 };
 
 /// Cost of the run so far.
 struct RunStatistics {
-  std::uint64_t evaluations =
-      0; ///< of the right-hand side; with two rates, of the downstream beads
+  /// Of the right-hand side; with two rates, of the downstream beads.
+  std::uint64_t evaluations = 0;
   std::uint64_t steps = 0;    ///< accepted
   std::uint64_t rejected = 0; ///< attempts
   std::uint64_t insertions = 0, releases = 0, landings = 0;
@@ -87,7 +88,7 @@ struct RunStatistics {
   double wall_time = 0;                                           ///< [s]
 };
 
-/// Not the name of the method in use, which the integrator knows.
+/// Not the names of methods in use, which the integrators know.
 void archive(const Archive& a, RunStatistics& statistics);
 
 } // namespace ehdjet

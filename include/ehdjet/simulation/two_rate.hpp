@@ -74,7 +74,6 @@ public:
   [[nodiscard]] double longest_step() const { return options_.longest; }
   /// Beads pass it within a step; none: there is no collector [m].
   [[nodiscard]] std::optional<double> collector() const { return options_.collector; }
-  [[nodiscard]] std::size_t inner_beads() const { return inner_beads_; }
 
   /// Tries a macro step of length h [s]. `jet` and `ledger` must stay as they are until it is committed.
   /// errors : RunError of the inner beads
