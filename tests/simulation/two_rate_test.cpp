@@ -36,6 +36,12 @@ TEST(TwoRate, every_bead_of_case_one_is_where_the_reference_has_it) {
   const Deviation d = deviation(simulation->jet(), state_at(5));
   EXPECT_LE(d.position, 2.5e-7 * cm);
   EXPECT_LE(d.velocity, 1e-3 * cm);
+  // Most of the time up to 5 ms the jet is too short for two rates; from there on it has them.
+  const Cost cost = cost_between(*simulation, 5e-3, 9e-3);
+  simulation->run_until(10e-3);
+  const Deviation later = deviation(simulation->jet(), state_at(10));
+  EXPECT_LE(later.position, 2e-6 * cm); // one rate: 1.2e-6
+  EXPECT_LE(cost.evaluations, 300);
 }
 
 // With refinement and landings: as many beads, landings and refinements, at the same times, for a
