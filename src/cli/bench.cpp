@@ -48,7 +48,6 @@ struct Row {
   std::optional<Table2Run> serial;
   Table2Run parallel;
 
-  [[nodiscard]] bool is_published() const { return paper->processors > 0; }
   [[nodiscard]] std::optional<double> efficiency(std::size_t threads) const {
     if (!serial) return std::nullopt;
     return serial->statistics.wall_time
@@ -94,7 +93,7 @@ void write_csv(TextOutput& out, const std::vector<Row>& rows, std::size_t thread
               threads, r.serial ? number(r.serial->statistics.wall_time, 3) : "",
               m.statistics.wall_time, number(r.efficiency(threads), 4),
               m.statistics.evaluations, r.full_sums());
-    if (r.is_published())
+    if (r.paper->is_published())
       out.print("{},{},{:.0f},{}\n", r.paper->beads, r.paper->processors, r.paper->wall,
                 r.paper->efficiency);
     else
@@ -120,14 +119,14 @@ std::string markdown(const std::vector<Row>& rows, std::size_t threads) {
                     r.serial ? number(r.serial->statistics.wall_time, 2) : "",
                     m.statistics.wall_time, number(r.efficiency(threads), 2),
                     r.per_ms(r.full_sums()), 1e3 * r.per_ms(m.statistics.wall_time));
-    text += r.is_published() ? fmt::format("{} | {:.0f} | {} |\n", r.paper->beads,
-                                           r.paper->wall, r.paper->efficiency)
-                             : " | | |\n";
+    text += r.paper->is_published() ? fmt::format("{} | {:.0f} | {} |\n", r.paper->beads,
+                                                  r.paper->wall, r.paper->efficiency)
+                                    : " | | |\n";
   }
   for (const std::string_view rates : {"one", "two"}) {
     double wall = 0, paper = 0;
     for (const Row& r : rows)
-      if (r.rates == rates && r.is_published())
+      if (r.rates == rates && r.paper->is_published())
         wall += r.parallel.statistics.wall_time, paper += r.paper->wall;
     if (wall == 0) continue;
     text += fmt::format(
@@ -161,12 +160,12 @@ struct Job {
 };
 
 Scene scene_of(const BenchOptions& options, const Table2Row& row, std::string_view rates) {
-  std::vector<std::string> overrides = overrides_of(options);
-  if (row.processors == 0)
-    for (const auto& [key, value] :
-         {std::pair{"refinement.length", row.length},
-          {"nozzle.link_length", std::min(2e-4, row.length / 2)}})
-      overrides.push_back(fmt::format("{}={}", key, value));
+  std::vector<std::string> overrides;
+  if (!row.is_published())
+    overrides = {fmt::format("refinement.length={}", row.length),
+                 fmt::format("nozzle.link_length={}", std::min(2e-4, row.length / 2)),
+                 "coulomb.solver=\"auto\""};
+  std::ranges::move(overrides_of(options), std::back_inserter(overrides)); // these count
   if (rates == "two") overrides.emplace_back("integrator.method=\"two-rate\"");
   Scene scene = read_scene(
       std::filesystem::path(options.scenes) / fmt::format("{}.toml", row.scene), overrides);
@@ -250,7 +249,8 @@ void add_bench_command(CLI::App& app) {
       ->add_option(
           "--rows", options->rows,
           "Rows, separated by commas: none,0.8,0.4,0.2 (L~ in cm), all by default, and "
-          "0.1,0.05,0.02, which take long with one rate")
+          "0.1,0.05,0.02, which take long with one rate; the latter with coulomb.solver = "
+          "\"auto\"")
       ->delimiter(',')
       ->check(CLI::IsMember(names));
   command

@@ -17,6 +17,8 @@ struct Table2Row {
   double beads;             ///< mean number
   int processors;
   double wall, efficiency; ///< [s], [-]
+
+  [[nodiscard]] constexpr bool is_published() const { return processors > 0; }
 };
 inline constexpr std::array<Table2Row, 4> table2{
     {{"none", "table2_none", 0, 150, 24, 8787, 0.26},
