@@ -330,6 +330,16 @@ void check_refinement(const SceneConfig& c, const SceneText& text) {
                     *r.coarsen, r.length / 2));
 }
 
+void check_air(const SceneConfig& c, const SceneText& text) {
+  if (!c.air) return;
+  if (c.air->velocity && c.air->profile)
+    text.fail(
+        "air.profile",
+        fmt::format("air.velocity and air.profile = \"{}\": the air has one velocity, or "
+                    "one over x. Remove one",
+                    *c.air->profile));
+}
+
 void check_varicosity(const SceneConfig& c, const SceneText& text) {
   if (!c.varicosity) return;
   if (!c.nozzle)
@@ -392,6 +402,7 @@ void settle(SceneConfig& config, const SceneText& text) {
                     *config.integrator.stress_scale));
   check_coulomb(config, text);
   check_refinement(config, text);
+  check_air(config, text);
   check_varicosity(config, text);
   check_output(config, text);
 }

@@ -9,12 +9,18 @@ namespace {
 std::string unit_of(const Range& range) {
   return std::string(range.unit);
 }
+std::string unit_of(const Triple& triple) {
+  return unit_of(triple.each);
+}
 std::string unit_of(const auto&) {
   return "";
 }
 std::string range_of(const Range& range) {
   return Range{"-", range.lowest, range.highest, range.open}
       .text(); // unit has its own column
+}
+std::string range_of(const Triple& triple) {
+  return "three numbers, each " + range_of(triple.each);
 }
 std::string range_of(const auto& allowed) {
   return allowed_text(allowed);

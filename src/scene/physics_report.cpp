@@ -38,9 +38,9 @@ double shortest_first_link(const NozzleConfig& n) {
 }
 
 /// How long a bead that leaves the nozzle with the fluid takes to the collector if only field and gravity
-/// pull at it [s].
+/// pull at it; none if the air slows it down [s].
 std::optional<double> flight_time(const SceneConfig& c) {
-  if (!c.nozzle || !c.collector) return std::nullopt;
+  if (!c.nozzle || !c.collector || c.air) return std::nullopt;
   const double a = c.nozzle->fluid_charge_density() / c.nozzle->density * field_strength(c)
                    + (c.gravity ? c.gravity->acceleration : 0);
   if (!(a > 0)) return std::nullopt;

@@ -1,11 +1,13 @@
 #include "ehdjet/scene/read_scene.hpp"
 
 #include "ehdjet/core/error.hpp"
+#include "ehdjet/scene/air_profile_file.hpp"
 #include "ehdjet/scene/calibration_file.hpp"
 #include "ehdjet/scene/chain_file.hpp"
 #include "ehdjet/scene/schema.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <fmt/format.h>
@@ -90,6 +92,13 @@ bool convert(const toml::node& node, const Range& range, std::size_t& value) {
   if (number == nullptr || !range.contains(static_cast<double>(number->get())))
     return false;
   value = static_cast<std::size_t>(number->get());
+  return true;
+}
+bool convert(const toml::node& node, const Triple& triple, std::array<double, 3>& value) {
+  const auto* list = node.as_array();
+  if (list == nullptr || list->size() != value.size()) return false;
+  for (std::size_t i = 0; i < value.size(); ++i)
+    if (!convert(*list->get(i), triple.each, value[i])) return false;
   return true;
 }
 bool convert(const toml::node& node, const Words& words, std::string& value) {
@@ -217,6 +226,8 @@ Scene read_scene_text(const std::string& text, const std::string& name,
   settle(scene.config, source);
   if (scene.config.coulomb && scene.config.coulomb->calibration)
     scene.costs = read_calibration(folder / *scene.config.coulomb->calibration);
+  if (scene.config.air && scene.config.air->profile)
+    scene.air_profile = read_air_profile(folder / *scene.config.air->profile);
   if (scene.config.chain) {
     const ChainConfig& chain = *scene.config.chain;
     scene.chain = read_chain(folder / chain.file, chain.time);

@@ -12,6 +12,10 @@ std::string text_of(double value, const Range&) {
 std::string text_of(std::size_t value, const Range&) {
   return fmt::format("{}", value);
 }
+std::string text_of(const std::array<double, 3>& value, const Triple&) {
+  return fmt::format("[{}, {}, {}]", toml_text(value[0]), toml_text(value[1]),
+                     toml_text(value[2]));
+}
 std::string text_of(const std::string& value, const auto&) {
   return toml_text(std::string_view(value));
 }
@@ -25,6 +29,9 @@ std::string text_of(Enum value, const Choices<Enum, N>& choices) {
 
 std::string unit_of(const Range& range) {
   return fmt::format("[{}] ", range.unit);
+}
+std::string unit_of(const Triple& triple) {
+  return unit_of(triple.each);
 }
 std::string unit_of(const auto&) {
   return "";

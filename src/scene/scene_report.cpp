@@ -81,6 +81,16 @@ std::string coulomb_text(const Scene& scene) {
                        scene.costs ? "measured" : "shipped");
 }
 
+std::string air_text(const AirConfig& air) {
+  std::string moving;
+  if (air.velocity)
+    moving = fmt::format(", wind of {:g}, {:g}, {:g} m/s", (*air.velocity)[0],
+                         (*air.velocity)[1], (*air.velocity)[2]);
+  if (air.profile) moving = ", wind of " + *air.profile;
+  return fmt::format("drag of the air ({}{}{})", name_of(air.drag, drag_laws),
+                     air.lift ? ", with lift" : "", moving);
+}
+
 std::string forces_text(const Scene& scene) {
   const SceneConfig& c = scene.config;
   std::vector<std::string> forces;
@@ -95,6 +105,7 @@ std::string forces_text(const Scene& scene) {
     forces.push_back(fmt::format("near field ({}{})",
                                  name_of(c.coulomb->near_field, near_field_forms),
                                  softens_pairs(c) ? ", softened pairs" : ""));
+  if (c.air) forces.push_back(air_text(*c.air));
   if (c.viscoelasticity)
     forces.emplace_back(carries_stress(c) ? "viscoelasticity (Maxwell)"
                                           : "viscoelasticity (inviscid: the stress is 0)");

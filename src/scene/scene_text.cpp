@@ -36,6 +36,13 @@ std::optional<toml::table> parse_value(const std::string& text) {
   return toml::table{{"value", text}};
 }
 
+bool has_few_numbers(const toml::array& list) {
+  constexpr std::size_t few = 8; // more would make a message long
+  return list.size() <= few && std::ranges::all_of(list, [](const toml::node& entry) {
+           return entry.is_number();
+         });
+}
+
 } // namespace
 
 SceneText::SceneText(const std::string& text, const std::string& name,
@@ -111,6 +118,12 @@ std::string value_text(const toml::node& node) {
   if (const auto* number = node.as_integer()) return fmt::format("{}", number->get());
   if (const auto* text = node.as_string()) return toml_text(std::string_view(text->get()));
   if (const auto* flag = node.as_boolean()) return flag->get() ? "true" : "false";
+  if (const auto* list = node.as_array(); list != nullptr && has_few_numbers(*list)) {
+    std::string text = "[";
+    for (const toml::node& entry : *list)
+      text += (text.size() > 1 ? ", " : "") + value_text(entry);
+    return text + ']';
+  }
   return node.is_table() ? "a table" : node.is_array() ? "an array" : "a date or time";
 }
 

@@ -46,6 +46,10 @@ std::string allowed_text(const Words& words) {
   return text;
 }
 
+std::string allowed_text(const Triple& triple) {
+  return "three numbers [x, y, z], each " + triple.each.text();
+}
+
 std::string allowed_text(AnyText) {
   return "text in quotes";
 }

@@ -7,6 +7,7 @@
 #include "ehdjet/events/landing.hpp"
 #include "ehdjet/events/pump.hpp"
 #include "ehdjet/events/refinement.hpp"
+#include "ehdjet/forces/air_drag.hpp"
 #include "ehdjet/forces/coulomb_force.hpp"
 #include "ehdjet/forces/external_field.hpp"
 #include "ehdjet/forces/feed_momentum.hpp"
@@ -20,6 +21,7 @@
 #include "ehdjet/scene/dimensionless.hpp"
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 namespace ehdjet {
@@ -194,6 +196,13 @@ void add_near_field(const SceneConfig& c, JetDynamics& dynamics) {
   dynamics.add(std::make_unique<SoftenedPairs>(softening));
 }
 
+AirFlow air_flow(const Scene& scene) {
+  const AirConfig& c = *scene.config.air;
+  if (c.profile) return {c.density, c.kinematic_viscosity, scene.air_profile};
+  const auto [x, y, z] = c.velocity.value_or(std::array{0., 0., 0.});
+  return {c.density, c.kinematic_viscosity, Vec3(x, y, z)};
+}
+
 std::unique_ptr<JetDynamics> compose_dynamics(const Scene& scene,
                                               std::shared_ptr<const Inflow> inflow) {
   const SceneConfig& c = scene.config;
@@ -223,6 +232,8 @@ std::unique_ptr<JetDynamics> compose_dynamics(const Scene& scene,
     dynamics->add(std::make_unique<BendingSurfaceTension>(c.surface_tension->coefficient));
   if (c.surface_tension && c.surface_tension->form == SurfaceTensionForm::line)
     dynamics->add(std::make_unique<LineSurfaceTension>(c.surface_tension->coefficient));
+  if (c.air) dynamics->add(std::make_unique<AirDrag>(air_flow(scene), c.air->drag));
+  if (c.air && c.air->lift) dynamics->add(std::make_unique<AirLift>(air_flow(scene)));
   if (carries_stress(c))
     dynamics->add(std::make_unique<Maxwell>(c.viscoelasticity->elastic_modulus,
                                             c.viscoelasticity->viscosity));

@@ -1,8 +1,10 @@
 #pragma once
 
 #include "ehdjet/coulomb/make_solver.hpp"
+#include "ehdjet/forces/air_drag.hpp"
 #include "ehdjet/refinement/refine_jet.hpp"
 
+#include <array>
 #include <cstddef>
 #include <map>
 #include <optional>
@@ -110,6 +112,17 @@ struct ViscoelasticityConfig {
   bool operator==(const ViscoelasticityConfig&) const = default;
 };
 
+/// Air around the jet (model 2.1).
+struct AirConfig {
+  double density = 1.21;                         ///< rho_air [kg/m^3]
+  double kinematic_viscosity = 1.511e-5;         ///< nu [m^2/s]
+  std::optional<std::array<double, 3>> velocity; ///< u [m/s]; still air without
+  std::optional<std::string> profile;            ///< file with u over x; excludes velocity
+  DragLaw drag = DragLaw::anisotropic;
+  bool lift = false;
+  bool operator==(const AirConfig&) const = default;
+};
+
 struct SurfaceTensionConfig {
   double coefficient = 0; ///< alpha [N/m]
   SurfaceTensionForm form = SurfaceTensionForm::paper;
@@ -193,6 +206,7 @@ struct SceneConfig {
   std::optional<CoulombConfig> coulomb;
   std::optional<ViscoelasticityConfig> viscoelasticity;
   std::optional<SurfaceTensionConfig> surface_tension;
+  std::optional<AirConfig> air;
   std::optional<VaricosityConfig> varicosity;
   std::optional<RefinementConfig> refinement;
   IntegratorConfig integrator;

@@ -14,6 +14,7 @@ struct Scene {
   SceneConfig config;
   ChainBeads chain;               ///< the beads of a chain scene; empty for a nozzle scene
   std::optional<CostModel> costs; ///< of the calibration that the scene names
+  AirProfile air_profile;         ///< of the file that the scene names
   std::string given;              ///< the text as read, byte for byte
 };
 

@@ -56,6 +56,10 @@ using Choices = std::array<Named<Enum>, N>;
 struct Words {
   std::vector<std::string_view> names;
 };
+/// Three numbers in square brackets, each in the range.
+struct Triple {
+  Range each;
+};
 struct AnyText {};
 struct YesNo {};
 
@@ -75,6 +79,8 @@ inline constexpr Choices<NearFieldForm, 3> near_field_forms{
     {{"point", NearFieldForm::point},
      {"free-surface", NearFieldForm::free_surface},
      {"fixed", NearFieldForm::fixed}}};
+inline constexpr Choices<DragLaw, 2> drag_laws{
+    {{"anisotropic", DragLaw::anisotropic}, {"tangential", DragLaw::tangential}}};
 inline constexpr Choices<RefinedMesh, 2> refined_meshes{
     {{"redistribute", RefinedMesh::redistribute}, {"cut", RefinedMesh::cut}}};
 inline constexpr Choices<EventPlacement, 2> event_placements{
@@ -110,6 +116,7 @@ std::string_view name_of(Enum value, const Choices<Enum, N>& choices) {
 /// What an allowed-values object says of itself, for messages and the reference page.
 [[nodiscard]] std::string allowed_text(const Range& range); ///< with unit
 [[nodiscard]] std::string allowed_text(const Words& words); ///< "a" or "b"
+[[nodiscard]] std::string allowed_text(const Triple& triple);
 [[nodiscard]] std::string allowed_text(AnyText);
 [[nodiscard]] std::string allowed_text(YesNo);
 template <class Enum, std::size_t N>
@@ -270,6 +277,24 @@ void describe(V& v, SurfaceTensionConfig& c) {
 }
 
 template <class V>
+void describe(V& v, AirConfig& c) {
+  v.optional("density", c.density, positive("kg/m^3", 100), "density of the air");
+  v.optional("kinematic_viscosity", c.kinematic_viscosity, positive("m^2/s", 1),
+             "kinematic viscosity of the air; 1.511e-05 at 20 C");
+  v.optional("velocity", c.velocity, Triple{between("m/s", -100, 100)},
+             "velocity of the air along x, y and z; a negative x is a counterflow",
+             "the air is still");
+  v.optional("profile", c.profile, AnyText{},
+             "velocity of the air over x: CSV with the columns x_m, ux_m_s, uy_m_s and "
+             "uz_m_s, relative to the scene file; excludes `velocity`",
+             "it is the same everywhere");
+  v.optional("drag", c.drag, drag_laws,
+             "drag across and along each link, or along it only, as JETSPIN has it");
+  v.optional("lift", c.lift, YesNo{},
+             "a curved thread that moves along itself is pushed outwards");
+}
+
+template <class V>
 void describe(V& v, VaricosityConfig& c) {
   v.required("every", c.every, between("-", 1, 1e9),
              "k: every k-th inserted bead differs from the others");
@@ -385,6 +410,7 @@ void describe(V& v, SceneConfig& c) {
           "Mutual Coulomb force of all beads, the nozzle's included.");
   v.table("viscoelasticity", c.viscoelasticity, "The fluid is a Maxwell fluid.");
   v.table("surface_tension", c.surface_tension, "Surface tension.");
+  v.table("air", c.air, "Drag of the air on the jet.");
   v.table("varicosity", c.varicosity,
           "Every k-th bead that is born differs from the others.");
   v.table("refinement", c.refinement,
