@@ -11,12 +11,15 @@ void ActingChain::bind(const JetState& jet, std::optional<double> absorbing_plan
   declared_ = jet.declared;
   absorbing_plane_ = absorbing_plane, absorbed_.clear();
   has_led_bead_ = jet.has_embryo;
+  drying_ = jet.table->drying();
+  if (drying_) wet_mass_ = mass_, wet_volume_ = volume_;
   inverse_mass_.resize(mass_.size());
   std::ranges::transform(mass_, inverse_mass_.begin(), [](double m) { return 1 / m; });
   const Inflow* inflow = constraints_.inflow;
   changes_content_ = inflow != nullptr && inflow->changes_content(has_led_bead_);
   if (changes_content_)
     full_ = {.volume = volume_[1], .mass = mass_[1], .charge = charge_[1]};
+  if (drying_) dry(jet.columns());
   fed_since_ = jet.fed_since;
   feed_ = inflow != nullptr ? inflow->feed() : std::nullopt;
 
@@ -67,14 +70,31 @@ const Stage& ActingChain::at(double t, std::span<const double> y, BeadRange targ
   if (changes_content_) {
     const LinkContent now =
         constraints_.inflow->acting(full_, fed_since_, t, stage_.columns.position());
-    volume_[1] = now.volume, mass_[1] = now.mass;
+    (drying_ ? wet_volume_ : volume_)[1] = now.volume;
+    (drying_ ? wet_mass_ : mass_)[1] = now.mass;
     if (!constraints_.grounded_collector || support(1) != Support::collector)
       charge_[1] = now.charge;
     if (!link_charge_.empty()) link_charge_[1] = now.charge;
     inverse_mass_[1] = 1 / now.mass;
   }
+  if (drying_) dry(stage_.columns);
   if (absorbing_plane_) absorb(y);
   return stage_;
+}
+
+// V = V_0 (1 - e),  m = m_0 (1 - e rho_s/rho)                              (model 2.2)
+void ActingChain::dry(JetColumns<const double> y) {
+  const double *lost = y.column(drying_->column).data(), *wet_mass = wet_mass_.data(),
+               *wet_volume = wet_volume_.data(), share = drying_->mass;
+  double *mass = mass_.data(), *volume = volume_.data(), *inverse = inverse_mass_.data();
+  for_parts(0, mass_.size(), [=](std::size_t begin, std::size_t end) {
+#pragma omp simd
+    for (std::size_t k = begin; k < end; ++k) {
+      volume[k] = wet_volume[k] * (1 - lost[k]);
+      mass[k] = wet_mass[k] * (1 - share * lost[k]);
+      inverse[k] = 1 / mass[k];
+    }
+  });
 }
 
 // A bead that has passed the plane since the step began acts from where it crossed:

@@ -46,7 +46,7 @@ bool Landing::due(const JetState& jet) const {
 
 double Landing::touching_distance(const JetState& jet, std::size_t bead) {
   if (bead + 1 != jet.links() || !jet.is_landed(bead + 1)) return 0;
-  const double area = jet.volume[bead + 1] / std::numbers::pi, // a^2 l
+  const double area = link_volume(jet, bead + 1) / std::numbers::pi, // a^2 l
       radius = jet.landed.back().radius;
   // A link that was short when its bead landed has to shrink first.
   return std::min(std::cbrt(area), 0.1 * area / (radius * radius));
@@ -202,8 +202,9 @@ void Landing::put_on_collector(JetState& jet, std::size_t bead, const Arrival& a
     jet.columns().column(c)[bead] = arrival.state[c];
   const std::size_t link = bead > 0 ? bead : jet.first(); // 0 owns none
   const double length = arrival.link_length.value_or(link_length(jet, link));
-  const LandedBead landed{
-      .bead = bead, .time = arrival.time, .radius = link_radius(jet.volume[link], length)};
+  const LandedBead landed{.bead = bead,
+                          .time = arrival.time,
+                          .radius = link_radius(link_volume(jet, link), length)};
   jet.landed.insert(std::ranges::upper_bound(jet.landed, bead, {}, &LandedBead::bead),
                     landed);
 }
@@ -218,7 +219,8 @@ void Landing::remove_leading(EventContext& context, double time) {
       .removal_time = time,
       .bead = bead_at(jet, leading),
       .landing_radius = landed.radius,
-      .radius = length > 0 ? link_radius(jet.volume[leading], length) : landed.radius};
+      .radius =
+          length > 0 ? link_radius(link_volume(jet, leading), length) : landed.radius};
   Ledger& ledger = context.ledger;
   ++ledger.removed_beads;
   ledger.removed_mass += deposited.bead.mass;

@@ -110,7 +110,7 @@ void FeedCut::apply(EventContext& context) {
       inflow_.acting(all, jet.fed_since, jet.time, std::as_const(jet).columns().position());
   const double share = upper_part.volume / all.volume; // a third
   const Vec3 link = r[1] - r[0];
-  const double section = all.volume / link.norm();
+  const double section = link_volume(jet, 1) / link.norm();
   Vec3 upper = v[0] + inflow_.rule().feed.flow_rate / section * link.normalized();
   upper.x() -= inflow_.nozzle().fluid_velocity; // the nozzle stays in its plane
 
@@ -140,7 +140,7 @@ void FeedCut::check_flow(const JetState& jet) const {
   };
   const auto v = jet.columns().velocity();
   for (std::size_t k = 1; k < jet.beads(); ++k) {
-    const double section = jet.volume[k] / link_length(jet, k);
+    const double section = link_volume(jet, k) / link_length(jet, k);
     if (k <= near_links && section > 2 * feed.section)
       refuse(fmt::format("the jet is {:.2g} times as thick as the nozzle at bead {}",
                          std::sqrt(section / feed.section), k));

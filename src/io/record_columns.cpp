@@ -76,8 +76,9 @@ void fill_radius(const JetSnapshot& s, std::vector<double>& values) {
   const auto r = s.columns.position();
   const JetState& jet = s.jet;
   for (std::size_t k = jet.first(); k < jet.beads(); ++k)
-    values[k] = link_radius(jet.volume[k], link_length(r, jet.first(), k));
-  if (jet.has_embryo) values[1] = link_radius(jet.volume[1], (r[1] - r[0]).norm());
+    values[k] = link_radius(link_volume(jet, s.columns, k), link_length(r, jet.first(), k));
+  if (jet.has_embryo)
+    values[1] = link_radius(link_volume(jet, s.columns, 1), (r[1] - r[0]).norm());
   // Bead 0 has no link. It gets the radius of the first link, with which a drawn jet begins.
   if (jet.first() < jet.beads()) values[0] = values[jet.first()];
 }
@@ -229,6 +230,12 @@ deposit_columns(std::shared_ptr<const BeadTable> table) {
                      [](const auto& d) { return d.landing_radius; }});
   columns.push_back({{"radius", "m", "of the bead's link when it left the chain"},
                      [](const auto& d) { return d.radius; }});
+  if (const auto drying = table->drying())
+    columns.push_back({{"dry_radius", "m", "of the bead's link once all solvent has gone"},
+                       [table, drying](const DepositedBead& d) {
+                         const double lost = column_values(d.bead, *table)[drying->column];
+                         return d.radius * std::sqrt(drying->dry / (1 - lost));
+                       }});
   for (std::size_t c = 0; c < table->carried().size(); ++c)
     add(table->carried()[c], integrated + c);
   // In an export the volume is the last of the basic carried columns.

@@ -60,6 +60,11 @@ void BeadTable::declare(BeadColumn column) {
   if (of_carried != carried
       || (column.remap == ColumnRemap::conservative && column.weight.empty()))
     refuse(column, "has a remap that does not suit its evolution or needs a weight");
+  if (column.drying) {
+    if (carried || column.owner != Owner::link || drying_)
+      refuse(column, "cannot say what evaporates");
+    drying_ = DryingColumn{*column.drying, integrated_.size()};
+  }
   (carried ? carried_ : integrated_).push_back(std::move(column));
 }
 

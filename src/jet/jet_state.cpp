@@ -173,6 +173,22 @@ Bead bead_at(const JetState& jet, std::size_t bead) {
   return b;
 }
 
+double link_volume(const JetState& jet, std::size_t bead) {
+  return link_volume(jet, jet.columns(), bead);
+}
+
+double link_volume(const JetState& jet, JetColumns<const double> state, std::size_t bead) {
+  const auto& drying = jet.table->drying();
+  if (!drying) return jet.volume[bead];
+  return jet.volume[bead] * (1 - state.column(drying->column)[bead]);
+}
+
+double link_mass(const JetState& jet, std::size_t bead) {
+  const auto& drying = jet.table->drying();
+  if (!drying) return jet.mass[bead];
+  return jet.mass[bead] * (1 - drying->mass * jet.columns().column(drying->column)[bead]);
+}
+
 double link_length(const JetState& jet, std::size_t bead) {
   EHDJET_EXPECTS(bead >= 1 && bead < jet.beads());
   return link_length(jet.columns().position(), jet.first(), bead);

@@ -340,6 +340,33 @@ void check_air(const SceneConfig& c, const SceneText& text) {
                     *c.air->profile));
 }
 
+void check_evaporation(const SceneConfig& c, const SceneText& text) {
+  if (!c.evaporation) return;
+  const EvaporationConfig& e = *c.evaporation;
+  if (!c.air)
+    text.fail("evaporation",
+              "[evaporation] needs [air], into which the solvent evaporates");
+  if (!(e.solid_fraction > e.polymer_fraction))
+    text.fail(
+        "evaporation.solid_fraction",
+        fmt::format("evaporation.solid_fraction = {} and evaporation.polymer_fraction = "
+                    "{}: must be more than that, or nothing could evaporate",
+                    e.solid_fraction, e.polymer_fraction));
+  // Volumes of real solutions do not add up exactly.
+  constexpr double tolerated = 0.1;
+  const double density = e.solution().density();
+  if (c.nozzle && std::abs(c.nozzle->density / density - 1) > tolerated)
+    text.fail("nozzle.density",
+              fmt::format(
+                  "nozzle.density = {} kg/m^3, and a solution of [evaporation] has {:.4g} "
+                  "kg/m^3: must agree within {:.0f} %",
+                  c.nozzle->density, density, 100 * tolerated));
+  if (c.output.budget)
+    text.fail("output.budget",
+              "output.budget and [evaporation]: a budget does not know what vapour takes "
+              "away. Remove one");
+}
+
 void check_varicosity(const SceneConfig& c, const SceneText& text) {
   if (!c.varicosity) return;
   if (!c.nozzle)
@@ -403,6 +430,7 @@ void settle(SceneConfig& config, const SceneText& text) {
   check_coulomb(config, text);
   check_refinement(config, text);
   check_air(config, text);
+  check_evaporation(config, text);
   check_varicosity(config, text);
   check_output(config, text);
 }

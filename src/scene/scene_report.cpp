@@ -106,6 +106,10 @@ std::string forces_text(const Scene& scene) {
                                  name_of(c.coulomb->near_field, near_field_forms),
                                  softens_pairs(c) ? ", softened pairs" : ""));
   if (c.air) forces.push_back(air_text(*c.air));
+  if (c.evaporation)
+    forces.push_back(fmt::format("evaporation from {:g} to {:g} of polymer",
+                                 c.evaporation->polymer_fraction,
+                                 c.evaporation->solid_fraction));
   if (c.viscoelasticity)
     forces.emplace_back(carries_stress(c) ? "viscoelasticity (Maxwell)"
                                           : "viscoelasticity (inviscid: the stress is 0)");

@@ -9,6 +9,7 @@
 #include "ehdjet/events/refinement.hpp"
 #include "ehdjet/forces/air_drag.hpp"
 #include "ehdjet/forces/coulomb_force.hpp"
+#include "ehdjet/forces/evaporation.hpp"
 #include "ehdjet/forces/external_field.hpp"
 #include "ehdjet/forces/feed_momentum.hpp"
 #include "ehdjet/forces/gravity.hpp"
@@ -203,6 +204,14 @@ AirFlow air_flow(const Scene& scene) {
   return {c.density, c.kinematic_viscosity, Vec3(x, y, z)};
 }
 
+Vaporisation vaporisation_of(const EvaporationConfig& c) {
+  return {.diffusivity = c.diffusivity,
+          .saturation = c.saturation,
+          .humidity = c.humidity,
+          .solid_fraction = c.solid_fraction,
+          .still_air_sherwood = c.still_air_sherwood};
+}
+
 std::unique_ptr<JetDynamics> compose_dynamics(const Scene& scene,
                                               std::shared_ptr<const Inflow> inflow) {
   const SceneConfig& c = scene.config;
@@ -234,6 +243,9 @@ std::unique_ptr<JetDynamics> compose_dynamics(const Scene& scene,
     dynamics->add(std::make_unique<LineSurfaceTension>(c.surface_tension->coefficient));
   if (c.air) dynamics->add(std::make_unique<AirDrag>(air_flow(scene), c.air->drag));
   if (c.air && c.air->lift) dynamics->add(std::make_unique<AirLift>(air_flow(scene)));
+  if (c.evaporation)
+    dynamics->add(std::make_unique<Evaporation>(air_flow(scene), c.evaporation->solution(),
+                                                vaporisation_of(*c.evaporation)));
   if (carries_stress(c))
     dynamics->add(std::make_unique<Maxwell>(c.viscoelasticity->elastic_modulus,
                                             c.viscoelasticity->viscosity));

@@ -243,7 +243,7 @@ void TwoRate::set_rate(const JetState& jet) {
   add_field_of(jet, 0, m, targets, e);
   rate_ = alone_;
   const Vec3View a = JetColumns<double>{rate_, n}.velocity();
-  for (std::size_t k = m; k < n; ++k) a.add(k, jet.charge[k] / jet.mass[k] * e[k - m]);
+  for (std::size_t k = m; k < n; ++k) a.add(k, jet.charge[k] / link_mass(jet, k) * e[k - m]);
   rest_landed(jet, rate_);
 }
 
@@ -439,7 +439,7 @@ void TwoRate::carry_over(const JetState& jet, const JetState& next, std::size_t 
   add_field_of(next, m, old, rows_of(next.columns().position(), old, beads), field);
   const Vec3View a = JetColumns<double>{alone_, beads}.velocity();
   for (std::size_t k = old; k < beads; ++k)
-    a.add(k, next.charge[k] / next.mass[k] * field[k - old]);
+    a.add(k, next.charge[k] / link_mass(next, k) * field[k - old]);
   rest_landed(next, alone_);
 }
 

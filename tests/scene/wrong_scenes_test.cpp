@@ -322,6 +322,28 @@ const Wrong wrong_scenes[] = {
      "[integrator]",
      "[air]\ndrag = \"stokes\"\n[integrator]",
      {"s.toml:23: ", "air.drag = \"stokes\"", "\"anisotropic\" or \"tangential\""}},
+    {"evaporation_into_nothing",
+     "[integrator]",
+     "[evaporation]\nsolvent_density = 789\npolymer_density = 1200\npolymer_fraction = "
+     "0.1\ndiffusivity = 1.2e-5\nsaturation = 0.11\n[integrator]",
+     {"s.toml:22: ", "[evaporation] needs [air]"}},
+    {"evaporation_of_what_is_solid",
+     "[integrator]",
+     "[air]\n[evaporation]\nsolvent_density = 789\npolymer_density = "
+     "1200\npolymer_fraction = "
+     "0.1\ndiffusivity = 1.2e-5\nsaturation = 0.11\nsolid_fraction = 0.05\n[integrator]",
+     {"s.toml:29: ", "evaporation.solid_fraction = 0.05", "polymer_fraction = 0.1"}},
+    {"evaporation_of_another_fluid",
+     "[integrator]",
+     "[air]\n[evaporation]\nsolvent_density = 1300\npolymer_density = "
+     "1200\npolymer_fraction = 0.1\ndiffusivity = 1.2e-5\nsaturation = 0.11\n[integrator]",
+     {"s.toml:8: ", "nozzle.density = 840 kg/m^3", "1289 kg/m^3", "within 10 %"}},
+    {"humidity_in_percent",
+     "[integrator]",
+     "[air]\n[evaporation]\nsolvent_density = 789\npolymer_density = "
+     "1200\npolymer_fraction = "
+     "0.1\ndiffusivity = 1.2e-5\nsaturation = 0.11\nhumidity = 40\n[integrator]",
+     {"s.toml:29: ", "evaporation.humidity = 40", "from 0 to 1"}},
     {"varicosity_every_half_bead",
      "[integrator]",
      "[varicosity]\nevery = 0.5\nfactor = 1.1\n[integrator]",

@@ -91,10 +91,13 @@ public:
 
 private:
   void absorb(std::span<const double> y);
+  void dry(JetColumns<const double> y);
 
   Constraints constraints_;
   Stage stage_;
   std::vector<double> mass_, charge_, volume_, inverse_mass_; // as they act
+  std::optional<BeadTable::DryingColumn> drying_;
+  std::vector<double> wet_mass_, wet_volume_; // used only with drying
   std::vector<double> link_charge_;           // used only with a grounded collector
   std::vector<std::vector<double>> declared_; // further carried columns
   std::vector<std::uint8_t> moves_;

@@ -30,6 +30,15 @@ enum class ColumnRemap {
   label         ///< carried: a new link has the value of the old link around its middle
 };
 
+/// What a link loses as its solvent evaporates. The column that has this says how much volume it has
+/// lost, over its volume at the nozzle (model 2.2):
+///
+///     V = V_0 (1 - e),   m = m_0 (1 - mass e),   e from 0 to 1 - dry
+struct Drying {
+  double mass = 0; ///< rho_s/rho of the fluid at the nozzle [-]
+  double dry = 0;  ///< what is left of the volume when all solvent has gone, over V_0 [-]
+};
+
 /// One property of beads or links, and all that those who move, store or write it need to know.
 struct BeadColumn {
   std::string name, unit, description;
@@ -40,7 +49,8 @@ struct BeadColumn {
   std::string weight = {};
   /// Integrated: the error is measured against rtol (error_scale + |y|) (model 6), in `unit`.
   double error_scale = 1;
-  double at_birth = 0; ///< of a new bead at the nozzle
+  double at_birth = 0;               ///< of a new bead at the nozzle
+  std::optional<Drying> drying = {}; ///< integrated, of links: what evaporates
 };
 
 /// The columns of a jet: x, y, z, vx, vy, vz (integrated), volume, mass, charge (carried), and
@@ -70,11 +80,18 @@ public:
   /// The carried column that an integrated one is weighted with.
   [[nodiscard]] std::optional<std::size_t> weight_of(std::size_t integrated) const;
 
+  /// The column that says how much a link has lost; none: links keep what they carry.
+  struct DryingColumn : Drying {
+    std::size_t column = 0; ///< integrated
+  };
+  [[nodiscard]] const std::optional<DryingColumn>& drying() const { return drying_; }
+
   static constexpr std::size_t basic_integrated = 6, basic_carried = 3;
 
 private:
   [[nodiscard]] BeadColumn& at(std::string_view name);
   std::vector<BeadColumn> integrated_, carried_;
+  std::optional<DryingColumn> drying_;
 };
 
 } // namespace ehdjet

@@ -32,9 +32,9 @@ struct JetState {
   double time = 0;                                             ///< [s]
   std::shared_ptr<const BeadTable> table = BeadTable::basic(); ///< which columns there are
   std::vector<double> y;                     ///< what the integrator advances
-  std::vector<double> mass;                  ///< [kg]
+  std::vector<double> mass;                  ///< as it left the nozzle [kg]
   std::vector<double> charge;                ///< [C], the full charge also for an embryo
-  std::vector<double> volume;                ///< [m^3]
+  std::vector<double> volume;                ///< as it left the nozzle [m^3]
   std::vector<std::vector<double>> declared; ///< further carried columns
   bool has_embryo = false;
   double fed_since = 0;           ///< when link 1 was cut last, if the inflow feeds it [s]
@@ -88,6 +88,13 @@ void remove_leading_bead(JetState& jet);
 [[nodiscard]] Bead bead_at(const JetState& jet, std::size_t bead);
 /// All values of a bead: of the integrated, then of the carried columns.
 [[nodiscard]] std::vector<double> column_values(const Bead& bead, const BeadTable& table);
+
+/// What a link has: its volume [m^3] and mass [kg] less what has evaporated (model 2.2).
+[[nodiscard]] double link_volume(const JetState& jet, std::size_t bead);
+[[nodiscard]] double link_mass(const JetState& jet, std::size_t bead);
+/// The same, of another state of that chain.
+[[nodiscard]] double link_volume(const JetState& jet, JetColumns<const double> state,
+                                 std::size_t bead);
 
 /// l_k = |r_k - r_(k-1)|, where the upstream neighbour of the bead behind an embryo is bead 0 [m].
 [[nodiscard]] double link_length(const JetState& jet, std::size_t bead);

@@ -2,6 +2,7 @@
 
 #include "ehdjet/coulomb/make_solver.hpp"
 #include "ehdjet/forces/air_drag.hpp"
+#include "ehdjet/forces/evaporation.hpp"
 #include "ehdjet/refinement/refine_jet.hpp"
 
 #include <array>
@@ -123,6 +124,23 @@ struct AirConfig {
   bool operator==(const AirConfig&) const = default;
 };
 
+/// The solvent evaporates, the jet dries and becomes a fibre (model 2.2).
+struct EvaporationConfig {
+  double solvent_density = 0;                                    ///< rho_s [kg/m^3]
+  double polymer_density = 0;                                    ///< rho_p [kg/m^3]
+  double polymer_fraction = 0;                                   ///< c_0, of the mass [-]
+  double diffusivity = 0;                                        ///< D [m^2/s]
+  double saturation = 0;                                         ///< C_sat [kg/m^3]
+  double humidity = 0;                                           ///< phi [-]
+  double solid_fraction = 0.9;                                   ///< c_solid [-]
+  double still_air_sherwood = Vaporisation{}.still_air_sherwood; ///< [-]
+  bool operator==(const EvaporationConfig&) const = default;
+
+  [[nodiscard]] Solution solution() const {
+    return {polymer_density, solvent_density, polymer_fraction};
+  }
+};
+
 struct SurfaceTensionConfig {
   double coefficient = 0; ///< alpha [N/m]
   SurfaceTensionForm form = SurfaceTensionForm::paper;
@@ -207,6 +225,7 @@ struct SceneConfig {
   std::optional<ViscoelasticityConfig> viscoelasticity;
   std::optional<SurfaceTensionConfig> surface_tension;
   std::optional<AirConfig> air;
+  std::optional<EvaporationConfig> evaporation;
   std::optional<VaricosityConfig> varicosity;
   std::optional<RefinementConfig> refinement;
   IntegratorConfig integrator;

@@ -295,6 +295,26 @@ void describe(V& v, AirConfig& c) {
 }
 
 template <class V>
+void describe(V& v, EvaporationConfig& c) {
+  v.required("solvent_density", c.solvent_density, between("kg/m^3", 100, 1e4),
+             "density of the solvent, rho_s");
+  v.required("polymer_density", c.polymer_density, between("kg/m^3", 100, 1e4),
+             "density of the polymer, rho_p");
+  v.required("polymer_fraction", c.polymer_fraction, between("-", 1e-9, 0.99),
+             "mass of the polymer over that of the fluid at the nozzle, c_0");
+  v.required("diffusivity", c.diffusivity, positive("m^2/s", 1e-2),
+             "diffusion coefficient of the vapour in air, D");
+  v.required("saturation", c.saturation, positive("kg/m^3", 10),
+             "mass of the vapour in a volume of saturated air, C_sat");
+  v.optional("humidity", c.humidity, between("-", 0, 1),
+             "vapour in the air over that of saturated air, phi");
+  v.optional("solid_fraction", c.solid_fraction, between("-", 1e-3, 1),
+             "polymer fraction at which evaporation ends; more than polymer_fraction");
+  v.optional("still_air_sherwood", c.still_air_sherwood, non_negative("-", 10),
+             "Sherwood number of a jet that moves with the air");
+}
+
+template <class V>
 void describe(V& v, VaricosityConfig& c) {
   v.required("every", c.every, between("-", 1, 1e9),
              "k: every k-th inserted bead differs from the others");
@@ -411,6 +431,8 @@ void describe(V& v, SceneConfig& c) {
   v.table("viscoelasticity", c.viscoelasticity, "The fluid is a Maxwell fluid.");
   v.table("surface_tension", c.surface_tension, "Surface tension.");
   v.table("air", c.air, "Drag of the air on the jet.");
+  v.table("evaporation", c.evaporation,
+          "The solvent evaporates into the air. Needs [air].");
   v.table("varicosity", c.varicosity,
           "Every k-th bead that is born differs from the others.");
   v.table("refinement", c.refinement,
