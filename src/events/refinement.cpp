@@ -39,7 +39,7 @@ void change_mesh(EventContext& context, const RefinementRule& rule,
   JetState& jet = context.jet;
   const JetTotals before = totals ? totals(jet) : JetTotals{};
   const std::size_t beads_before = jet.links();
-  const auto joined = rule.coarsen ? coarsen_jet(jet, rule) : std::nullopt;
+  const auto joined = rule.joins() ? coarsen_jet(jet, rule) : std::nullopt;
   const auto cut = at_time(jet.time, [&] { return cut_anew(jet, rule); });
   if (!joined && !cut) return;
   auto& count = context.statistics.refinements;

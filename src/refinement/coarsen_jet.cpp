@@ -20,11 +20,19 @@ void join_with_next(JetState& jet, std::size_t k) {
       jet.carried(c)[k + 1] += jet.carried(c)[k];
 }
 
+bool is_stub(const JetState& jet, const RefinementRule& rule, std::size_t k,
+             double length) {
+  return rule.shortest
+         && length < *rule.shortest * link_radius(link_volume(jet, k), length);
+}
+
 // Whether links k and k + 1 are to become one.
 bool joins_next(const JetState& jet, const RefinementRule& rule, std::size_t k) {
   const auto r = jet.columns().position();
-  const double both = (r[k] - r[k - 1]).norm() + (r[k + 1] - r[k]).norm();
-  return both <= *rule.coarsen && !jet.is_landed(k) && !jet.is_landed(k + 1);
+  const double own = (r[k] - r[k - 1]).norm(), next = (r[k + 1] - r[k]).norm();
+  const bool too_short = (rule.coarsen && own + next <= *rule.coarsen)
+                         || is_stub(jet, rule, k, own) || is_stub(jet, rule, k + 1, next);
+  return too_short && !jet.is_landed(k) && !jet.is_landed(k + 1);
 }
 
 // The first link is being fed and its bead triggers the next insertion.
@@ -57,14 +65,14 @@ void remove_beads(JetState& jet, const std::vector<bool>& gone) {
 } // namespace
 
 bool has_short_links(const JetState& jet, const RefinementRule& rule) {
-  if (!rule.coarsen) return false;
+  if (!rule.joins()) return false;
   for (std::size_t k = first_to_join(jet, rule); k + 1 < jet.beads(); ++k)
     if (joins_next(jet, rule, k)) return true;
   return false;
 }
 
 std::optional<MeshChange> coarsen_jet(JetState& jet, const RefinementRule& rule) {
-  EHDJET_EXPECTS(rule.coarsen);
+  EHDJET_EXPECTS(rule.joins());
   const std::size_t before = jet.links();
   std::vector<bool> gone(jet.beads(), false);
   std::optional<MeshChange> change;

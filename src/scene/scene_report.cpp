@@ -168,6 +168,7 @@ std::string refinement_text(const SceneConfig& c) {
           ? fmt::format("  refinement: {}, links longer than {} m are cut", when, r.length)
           : fmt::format("  refinement: {}, where links are longer than {} m; {} remap",
                         when, r.length, name_of(r.remap, refinement_remaps));
+  if (r.shortest) text += fmt::format("; links below {} radii are joined", *r.shortest);
   if (r.coarsen) text += fmt::format("; links together below {} m are joined", *r.coarsen);
   return text + '\n';
 }

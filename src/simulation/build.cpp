@@ -49,6 +49,7 @@ RefinementRule refinement_rule(const SceneConfig& c) {
   RefinementRule rule{.length = r.length,
                       .remap = r.remap,
                       .coarsen = r.coarsen,
+                      .shortest = r.shortest,
                       .collector = {},
                       .has_nozzle = c.nozzle.has_value()};
   if (c.collector) rule.collector = c.collector->distance;

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -46,6 +47,25 @@ TEST(Coarsening, keeps_what_links_and_beads_carry) {
   EXPECT_NEAR(after.stress / before.stress, 1, 1e-14);
   EXPECT_LT(after.kinetic, before.kinetic);
   EXPECT_LT(after.elastic, before.elastic);
+}
+
+TEST(Coarsening, joins_a_link_that_is_no_thread_any_more_with_its_neighbour) {
+  for (const std::size_t stub : {2U, 5U}) { // inside, and at the end of the jet
+    std::vector<double> links(6, 1.0);
+    links[stub] = 0.01;
+    JetState jet = straight_jet(links);
+    for (double& v : jet.volume) v = 1e-4; // radii of 0.0056, and 0.056 of the stub
+    RefinementRule rule;
+    rule.length = 1e9, rule.shortest = 0.1;
+    EXPECT_FALSE(has_short_links(jet, rule));
+    rule.shortest = 1;
+    EXPECT_TRUE(has_short_links(jet, rule));
+    const double volume = std::accumulate(jet.volume.begin(), jet.volume.end(), 0.0);
+    ASSERT_TRUE(coarsen_jet(jet, rule));
+    EXPECT_EQ(jet.links(), 5U);
+    EXPECT_NEAR(std::accumulate(jet.volume.begin(), jet.volume.end(), 0.0), volume, 1e-18);
+    EXPECT_FALSE(has_short_links(jet, rule));
+  }
 }
 
 TEST(Coarsening, joins_two_links_into_one_with_their_contents) {

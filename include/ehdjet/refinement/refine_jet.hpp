@@ -19,10 +19,14 @@ struct RefinementRule {
   LinkRemap remap = LinkRemap::conservative;
   /// Neighbouring links that are together no longer than this become one; absent: never [m].
   std::optional<double> coarsen;
+  /// A link shorter than so many of its own radii becomes one with a neighbour: it is no thread any more;
+  /// absent: never.
+  std::optional<double> shortest;
   std::optional<double> collector; ///< h: new beads are not put beyond it [m]
   /// Bead 0 is the nozzle: the link that is being fed, which grows to 2 l_step, is left alone.
   bool has_nozzle = true;
 
+  [[nodiscard]] bool joins() const { return coarsen || shortest; }
   [[nodiscard]] std::size_t first_knot() const { return has_nozzle ? 1 : 0; }
 };
 
@@ -61,7 +65,8 @@ std::optional<MeshChange> cut_links(JetState& jet, const RefinementRule& rule);
 /// Whether there are links to join.
 [[nodiscard]] bool has_short_links(const JetState& jet, const RefinementRule& rule);
 
-/// Joins neighbouring links that are together no longer than `rule.coarsen` (model 7): amounts and
+/// Joins neighbouring links that are together no longer than `rule.coarsen` or one of which is shorter
+/// than `rule.shortest` (model 7): amounts and
 /// the sums of weight times column (momentum, V sigma) are kept. The insertion zone and a landed
 /// bead are left alone. Nothing if there are no such links.
 std::optional<MeshChange> coarsen_jet(JetState& jet, const RefinementRule& rule);

@@ -170,7 +170,8 @@ struct RefinementConfig {
   LinkRemap remap = LinkRemap::conservative;
   ColumnRemap velocity = ColumnRemap::spline;
   ColumnRemap stress = ColumnRemap::spline;
-  std::optional<double> coarsen = {}; ///< join links together shorter than this [m]
+  std::optional<double> coarsen = {};  ///< join links together shorter than this [m]
+  std::optional<double> shortest = {}; ///< join links shorter than so many radii [-]
   bool operator==(const RefinementConfig&) const = default;
 };
 

@@ -346,6 +346,11 @@ void describe(V& v, RefinementConfig& c) {
   v.optional("coarsen", c.coarsen, positive("m", 1),
              "join neighbouring links that are together no longer than this",
              "links are never joined");
+  v.optional(
+      "shortest", c.shortest, positive("-", 100),
+      "join a link shorter than so many of its radii with a neighbour: a drop, as at the "
+      "end of a jet that capillarity pulls back",
+      "links are never joined for that");
 }
 
 template <class V>
