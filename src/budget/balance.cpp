@@ -43,7 +43,12 @@ Balance::Balance(const JetDynamics& dynamics,
   for (const auto& term : dynamics.terms()) {
     accounts_.push_back(term->account());
     const TermAccount& account = accounts_.back();
-    if (!account.energy.empty()) stores_.push_back(account);
+    store_of_.push_back(none);
+    if (!account.energy.empty()) {
+      const auto known = std::ranges::find(stores_, account.energy, &TermAccount::energy);
+      store_of_.back() = static_cast<std::size_t>(known - stores_.begin());
+      if (known == stores_.end()) stores_.push_back(account);
+    }
     if (!account.channel.name.empty()) add_channel(account.channel);
     own_.push_back(index_of(channels_, account.channel.name));
   }
@@ -96,8 +101,9 @@ JetEnergies Balance::energies(const JetState& jet) {
   const Stage& stage = look_at(chain_, jet);
   JetEnergies e = motion_of(chain_);
   const auto& terms = dynamics_.terms();
+  e.stored.assign(stores_.size(), 0.0);
   for (std::size_t i = 0; i < terms.size(); ++i)
-    if (!accounts_[i].energy.empty()) e.stored.push_back(terms[i]->energy(stage));
+    if (store_of_[i] != none) e.stored[store_of_[i]] += terms[i]->energy(stage);
   return e;
 }
 
@@ -154,7 +160,7 @@ void Balance::add_flows(const ActingChain& chain, ForceTerm& term,
                         const TermAccount& account, Exchange& exchange) {
   const Stage& stage = chain.stage();
   const std::size_t n = stage.beads();
-  const bool stores = !account.energy.empty(),
+  const bool stores = !account.energy.empty() || account.tells_all_power,
              is_external = !account.channel.momentum.empty();
   force_.assign(3 * n, 0.0);
   const std::span<double> f(force_);
@@ -193,7 +199,8 @@ JetTotals Balance::totals(const JetState& jet, bool with_coulomb_energy) {
   totals.momentum = motion.momentum, totals.kinetic_energy = motion.kinetic;
   for (std::size_t i = 0; i < accounts_.size(); ++i) {
     ForceTerm& term = *dynamics_.terms()[i];
-    if (accounts_[i].energy == "elastic_energy") totals.elastic_energy = term.energy(stage);
+    if (accounts_[i].energy == "elastic_energy")
+      totals.elastic_energy += term.energy(stage);
     const std::string& energy = accounts_[i].energy;
     if (with_coulomb_energy
         && (energy == "coulomb_energy" || energy == "near_field_energy"

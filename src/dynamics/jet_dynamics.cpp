@@ -157,17 +157,17 @@ void JetDynamics::add_time_derivative(double factor, std::span<double> out) cons
   rates.velocity().add(k, scale * (links.pull_lower[k] * velocity));
   if (!links.damping.empty())
     rates.velocity().add(k, scale * (links.damping[k] * acceleration));
-  if (links.sigma)
-    rates.column(*links.sigma)[k] -=
-        factor * (links.stretching[k].dot(acceleration) + links.turning[k].dot(velocity));
+  for (const LinkDerivatives::Column& c : links.columns())
+    rates.column(c.place)[k] -=
+        factor * (c.stretching[k].dot(acceleration) + c.turning[k].dot(velocity));
 }
 
 // Neighbours in opposite phase: s^2 + s/tau + omega^2 = 0 with elasticity, s^2 + omega^2 = 0
 // without.
 StiffPart::Modes JetDynamics::fastest_modes() const {
   const auto [elastic, tension] = jacobian_.squared_rates(chain_.inverse_mass());
-  double relaxation = jacobian_.damping_rate(chain_.inverse_mass());
-  for (const double r : jacobian_.links().relaxation) relaxation = std::max(relaxation, r);
+  const double relaxation =
+      std::max(jacobian_.damping_rate(chain_.inverse_mass()), jacobian_.relaxation_rate());
   Modes modes{-relaxation, 0, std::complex<double>(0, std::sqrt(tension))};
   if (const double decay = relaxation / 2, omega = std::sqrt(elastic); omega > decay)
     modes[1] = {-decay, std::sqrt((omega - decay) * (omega + decay))};

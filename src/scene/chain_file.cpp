@@ -56,7 +56,7 @@ void ChainBeads::copy_to(const BeadColumn& column, std::span<double> out) const 
     values = &other->second.values;
   }
   EHDJET_EXPECTS(values == nullptr || values->size() == out.size());
-  std::ranges::fill(out, 0.0);
+  std::ranges::fill(out, column.at_birth);
   if (values != nullptr) std::ranges::copy(*values, out.begin());
 }
 

@@ -16,6 +16,23 @@ double NozzleConfig::fluid_charge_density() const {
   return current && flow_rate ? *current / *flow_rate : charge_density.value_or(0);
 }
 
+bool ViscoelasticityConfig::is_tensorial() const {
+  return model == Rheology::upper_convected_maxwell || model == Rheology::oldroyd_b
+         || model == Rheology::giesekus || model == Rheology::fene_p;
+}
+
+std::vector<RelaxationMode> ViscoelasticityConfig::relaxation_modes() const {
+  if (modes) return *modes;
+  if (model == Rheology::kelvin_voigt || !(elastic_modulus > 0.0 && viscosity > 0.0))
+    return {};
+  return {{.modulus = *elastic_modulus, .relaxation_time = *viscosity / *elastic_modulus}};
+}
+
+double ViscoelasticityConfig::instant_viscosity() const {
+  if (model == Rheology::kelvin_voigt) return viscosity.value_or(0);
+  return 3 * solvent_viscosity.value_or(0); // Trouton's ratio
+}
+
 bool has_near_field(const SceneConfig& c) {
   return c.coulomb && c.coulomb->near_field != NearFieldForm::point;
 }

@@ -6,6 +6,7 @@
 #include "ehdjet/scene/stability.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fmt/format.h>
 #include <limits>
@@ -187,6 +188,127 @@ void check_adaptive_keys(const IntegratorConfig& i, const SceneText& text) {
                     name, *value, i.min_step));
 }
 
+/// The law of the stress and its keys.
+class RheologyCheck {
+public:
+  RheologyCheck(const SceneConfig& config, const SceneText& text)
+      : fluid_(*config.viscoelasticity)
+      , text_(text)
+      , model_(fmt::format("viscoelasticity.model = \"{}\"",
+                           name_of(fluid_.model, rheologies))) {}
+
+  void run() const {
+    if (fluid_.modes)
+      check_modes();
+    else
+      check_moduli();
+    const bool giesekus = fluid_.model == Rheology::giesekus,
+               oldroyd = fluid_.model == Rheology::oldroyd_b,
+               fene = fluid_.model == Rheology::fene_p,
+               curve = fluid_.model == Rheology::herschel_bulkley;
+    check("mobility", "", fluid_.mobility, giesekus, giesekus);
+    check("solvent_viscosity", " Pa s", fluid_.solvent_viscosity,
+          oldroyd || giesekus || fene, oldroyd);
+    check("extensibility", "", fluid_.extensibility, fene, fene);
+    check("consistency", " Pa s^n", fluid_.consistency, curve, curve);
+    check("flow_index", "", fluid_.flow_index, curve, curve);
+    check("yield_stress", " Pa", fluid_.yield_stress, curve, false);
+    check("regularization", " s", fluid_.regularization, curve, false);
+    const bool yields = fluid_.yield_stress.value_or(0) > 0;
+    if (yields && !fluid_.regularization)
+      refuse("yield_stress",
+             fmt::format("viscoelasticity.yield_stress = {} Pa needs "
+                         "viscoelasticity.regularization, a time in s: the fluid creeps "
+                         "at strain rates below its inverse",
+                         *fluid_.yield_stress));
+    if (fluid_.regularization && !yields)
+      refuse("regularization",
+             fmt::format("viscoelasticity.regularization = {} s has no meaning without "
+                         "viscoelasticity.yield_stress. Remove it",
+                         *fluid_.regularization));
+  }
+
+private:
+  /// elastic_modulus and viscosity.
+  struct Modulus {
+    const char *key, *meaning;
+    const Range& range;
+    const std::optional<double>& value;
+  };
+  [[nodiscard]] std::array<Modulus, 2> moduli() const {
+    return {
+        {{"elastic_modulus", "elastic modulus, G", elastic_moduli, fluid_.elastic_modulus},
+         {"viscosity", "viscosity, mu", viscosities, fluid_.viscosity}}};
+  }
+
+  void check_modes() const {
+    const std::string modes = "viscoelasticity.modes = " + toml_text(*fluid_.modes);
+    if (!fluid_.is_tensorial())
+      refuse("modes",
+             fmt::format("{} has no meaning with {}: only the stress tensors of "
+                         "\"upper-convected-maxwell\", \"oldroyd-b\", \"giesekus\" and "
+                         "\"fene-p\" have modes. Remove it",
+                         modes, model_));
+    for (const Modulus& m : moduli())
+      if (m.value)
+        refuse(m.key,
+               fmt::format("viscoelasticity.{} = {} {} and {}: moduli and relaxation "
+                           "times are given twice. Remove one",
+                           m.key, *m.value, m.range.unit, modes));
+  }
+  void check_moduli() const {
+    for (const Modulus& m : moduli()) {
+      if (!m.value)
+        refuse(m.key, fmt::format("viscoelasticity.{} is missing: must be {} ({})", m.key,
+                                  m.range.text(), m.meaning));
+      if (fluid_.model == Rheology::herschel_bulkley && !(*m.value > 0))
+        refuse(m.key,
+               fmt::format("viscoelasticity.{} = {} {}: must be greater than 0 {} with {}, "
+                           "viscosity/elastic_modulus is the time that the stress takes to "
+                           "follow the flow curve",
+                           m.key, *m.value, m.range.unit, m.range.unit, model_));
+    }
+  }
+  void check(const char* key, const char* unit, std::optional<double> value, bool allowed,
+             bool needed) const {
+    if (value && !allowed)
+      refuse(key, fmt::format("viscoelasticity.{} = {}{} has no meaning with {}. Remove it",
+                              key, *value, unit, model_));
+    if (!value && needed)
+      refuse(key, fmt::format("viscoelasticity.{} is missing: it is needed with {}", key,
+                              model_));
+  }
+  [[noreturn]] void refuse(const char* key, const std::string& why) const {
+    text_.fail(fmt::format("viscoelasticity.{}", key), why);
+    throw; // `fail` does not return
+  }
+
+  const ViscoelasticityConfig& fluid_;
+  const SceneText& text_;
+  std::string model_;
+};
+
+/// Keys of other tables that are about a stress which is integrated.
+void check_stress_keys(const SceneConfig& c, const SceneText& text) {
+  if (!c.viscoelasticity || c.viscoelasticity->model != Rheology::kelvin_voigt) return;
+  const char* with = "viscoelasticity.model = \"kelvin-voigt\": its stress follows from "
+                     "lengths and velocities and is not integrated. Remove it";
+  if (c.integrator.stress_scale)
+    text.fail("integrator.stress_scale",
+              fmt::format("integrator.stress_scale = {} Pa has no meaning with {}",
+                          *c.integrator.stress_scale, with));
+  if (c.refinement && c.refinement->stress)
+    text.fail("refinement.stress",
+              fmt::format("refinement.stress = \"{}\" has no meaning with {}",
+                          name_of(*c.refinement->stress, column_remaps), with));
+  if (c.nozzle && c.nozzle->nozzle_stress && !(*c.viscoelasticity->elastic_modulus > 0))
+    text.fail("nozzle.nozzle_stress",
+              fmt::format("nozzle.nozzle_stress = {} Pa and "
+                          "viscoelasticity.elastic_modulus = 0 Pa: nothing holds it. "
+                          "Remove it",
+                          *c.nozzle->nozzle_stress));
+}
+
 /// Two rates are for beads that are born at a nozzle and repel each other.
 void check_two_rates(const SceneConfig& c, const SceneText& text) {
   const IntegratorConfig& i = c.integrator;
@@ -321,7 +443,7 @@ void check_refinement(const SceneConfig& c, const SceneText& text) {
   };
   is_of_redistribution("remap", r.remap != usual.remap);
   is_of_redistribution("velocity", r.velocity != usual.velocity);
-  is_of_redistribution("stress", r.stress != usual.stress);
+  is_of_redistribution("stress", r.stress.has_value());
   if (r.coarsen && *r.coarsen > r.length / 2)
     refuse(
         "coarsen",
@@ -416,6 +538,8 @@ void check_output(const SceneConfig& c, const SceneText& text) {
 } // namespace
 
 void settle(SceneConfig& config, const SceneText& text) {
+  if (config.viscoelasticity) RheologyCheck(config, text).run();
+  check_stress_keys(config, text);
   check_jet(config, text);
   check_field(config, text);
   settle_step(config.integrator, text);
@@ -455,8 +579,9 @@ void check_stability(const Scene& scene, const SceneText& text) {
   const StabilityLimits limits = step_limits(rates, butcher_tableau(i.method));
   const double unlimited = std::numeric_limits<double>::infinity();
   const double viscoelastic = limits.viscoelastic.value_or(unlimited),
+               damping = limits.damping.value_or(unlimited),
                tension = limits.surface_tension.value_or(unlimited),
-               limit = std::min(viscoelastic, tension);
+               limit = std::min({viscoelastic, damping, tension});
   const double steps = scene.config.run.end_time / limit;
   const double motion = 1 / rates.coulomb.value_or(0); // infinite without charges
   const bool far_below_accuracy =
@@ -464,10 +589,13 @@ void check_stability(const Scene& scene, const SceneText& text) {
   if (steps <= too_many_steps && !far_below_accuracy) return;
 
   std::string reason;
-  if (tension < viscoelastic)
+  if (damping < std::min(viscoelastic, tension))
+    reason = fmt::format("viscosity damps links of {:.3g} m at {:.3g} 1/s", link.length,
+                         *rates.damping);
+  else if (tension < viscoelastic)
     reason = fmt::format("surface tension moves links of {:.3g} m at {:.3g} 1/s",
                          link.length, *rates.surface_tension);
-  else if (*rates.relaxation > *rates.elastic)
+  else if (rates.relaxation.value_or(0) > *rates.elastic)
     reason = fmt::format("stress relaxes at G/mu = {:.3g} 1/s", *rates.relaxation);
   else
     reason = fmt::format("elastic waves turn links of {:.3g} m around at {:.3g} 1/s",

@@ -16,15 +16,20 @@ double field_strength(const SceneConfig& config) {
 }
 
 bool carries_stress(const SceneConfig& c) {
-  return c.viscoelasticity && c.viscoelasticity->elastic_modulus > 0
-         && c.viscoelasticity->viscosity > 0;
+  if (!c.viscoelasticity) return false;
+  const ViscoelasticityConfig& fluid = *c.viscoelasticity;
+  return !fluid.relaxation_modes().empty() || fluid.instant_viscosity() > 0
+         || (fluid.model == Rheology::kelvin_voigt && fluid.elastic_modulus > 0.0);
 }
 
 std::optional<DimensionlessGroups> dimensionless_groups(const SceneConfig& config) {
   if (!config.nozzle || !config.viscoelasticity) return std::nullopt;
   const NozzleConfig& n = *config.nozzle;
-  const double G = config.viscoelasticity->elastic_modulus;
-  const double mu = config.viscoelasticity->viscosity;
+  const ViscoelasticityConfig& fluid = *config.viscoelasticity;
+  double G = fluid.elastic_modulus.value_or(0), mu = fluid.viscosity.value_or(0);
+  if (fluid.modes)
+    for (const RelaxationMode& m : *fluid.modes)
+      G += m.modulus, mu += m.modulus * m.relaxation_time;
   if (G == 0 || mu == 0 || n.fluid_charge_density() == 0) return std::nullopt;
 
   const double section = std::numbers::pi * n.radius * n.radius;

@@ -12,6 +12,9 @@ std::string unit_of(const Range& range) {
 std::string unit_of(const Triple& triple) {
   return unit_of(triple.each);
 }
+std::string unit_of(const ModeList&) {
+  return "Pa, s";
+}
 std::string unit_of(const auto&) {
   return "";
 }

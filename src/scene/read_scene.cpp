@@ -108,6 +108,20 @@ bool convert(const toml::node& node, const Words& words, std::string& value) {
   value = text->get();
   return true;
 }
+bool convert(const toml::node& node, const ModeList& allowed,
+             std::vector<RelaxationMode>& modes) {
+  const auto* list = node.as_array();
+  if (list == nullptr || list->empty() || list->size() > allowed.most) return false;
+  for (const toml::node& entry : *list) {
+    const auto* pair = entry.as_array();
+    RelaxationMode& mode = modes.emplace_back();
+    if (pair == nullptr || pair->size() != 2
+        || !convert(*pair->get(0), allowed.modulus, mode.modulus)
+        || !convert(*pair->get(1), allowed.relaxation_time, mode.relaxation_time))
+      return false;
+  }
+  return true;
+}
 bool convert(const toml::node& node, AnyText, std::string& value) {
   if (const auto* text = node.as_string()) value = text->get();
   return node.is_string();

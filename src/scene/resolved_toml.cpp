@@ -19,6 +19,9 @@ std::string text_of(const std::array<double, 3>& value, const Triple&) {
 std::string text_of(const std::string& value, const auto&) {
   return toml_text(std::string_view(value));
 }
+std::string text_of(const std::vector<RelaxationMode>& modes, const ModeList&) {
+  return toml_text(modes);
+}
 std::string text_of(bool value, YesNo) {
   return value ? "true" : "false";
 }
@@ -32,6 +35,9 @@ std::string unit_of(const Range& range) {
 }
 std::string unit_of(const Triple& triple) {
   return unit_of(triple.each);
+}
+std::string unit_of(const ModeList&) {
+  return "[Pa, s] ";
 }
 std::string unit_of(const auto&) {
   return "";

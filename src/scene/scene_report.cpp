@@ -40,7 +40,8 @@ std::string stability_text(const Scene& scene) {
   const LinkState link = link_state(scene, k);
   const ChainRates rates = chain_rates(scene.config, link);
   const StabilityLimits limits = step_limits(rates);
-  if (!rates.elastic && !rates.coulomb && !rates.surface_tension) return "";
+  if (!rates.elastic && !rates.damping && !rates.coulomb && !rates.surface_tension)
+    return "";
   std::string text = fmt::format(
       "\nFastest rates of a uniform chain like {} (l = {:.6g} m, a = {:.6g} m), and the "
       "longest stable step of rk4\n",
@@ -56,6 +57,7 @@ std::string stability_text(const Scene& scene) {
   line("relaxation 1/tau", rates.relaxation, {});
   line("viscous 4mu/(rho l^2)", rates.viscous, {});
   line("elastic", rates.elastic, limits.viscoelastic);
+  line("damping", rates.damping, limits.damping);
   line("Coulomb", rates.coulomb, limits.coulomb);
   line("bending growth", rates.coulomb_growth, {});
   line("surface tension", rates.surface_tension, limits.surface_tension);
@@ -91,6 +93,15 @@ std::string air_text(const AirConfig& air) {
                      air.lift ? ", with lift" : "", moving);
 }
 
+std::string rheology_text(const SceneConfig& c) {
+  const ViscoelasticityConfig& fluid = *c.viscoelasticity;
+  if (!carries_stress(c)) return "viscoelasticity (inviscid: the stress is 0)";
+  if (fluid.model == Rheology::maxwell) return "viscoelasticity (Maxwell)";
+  const std::size_t modes = fluid.relaxation_modes().size();
+  return fmt::format("viscoelasticity ({}{})", name_of(fluid.model, rheologies),
+                     modes > 1 ? fmt::format(", {} modes", modes) : "");
+}
+
 std::string forces_text(const Scene& scene) {
   const SceneConfig& c = scene.config;
   std::vector<std::string> forces;
@@ -110,9 +121,7 @@ std::string forces_text(const Scene& scene) {
     forces.push_back(fmt::format("evaporation from {:g} to {:g} of polymer",
                                  c.evaporation->polymer_fraction,
                                  c.evaporation->solid_fraction));
-  if (c.viscoelasticity)
-    forces.emplace_back(carries_stress(c) ? "viscoelasticity (Maxwell)"
-                                          : "viscoelasticity (inviscid: the stress is 0)");
+  if (c.viscoelasticity) forces.push_back(rheology_text(c));
   if (c.surface_tension)
     forces.push_back(fmt::format("surface tension ({} form)",
                                  name_of(c.surface_tension->form, surface_tension_forms)));

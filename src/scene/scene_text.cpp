@@ -36,10 +36,11 @@ std::optional<toml::table> parse_value(const std::string& text) {
   return toml::table{{"value", text}};
 }
 
-bool has_few_numbers(const toml::array& list) {
-  constexpr std::size_t few = 8; // more would make a message long
+/// Numbers, or lists of numbers; more would make a message long.
+bool is_short(const toml::array& list) {
+  constexpr std::size_t few = 16;
   return list.size() <= few && std::ranges::all_of(list, [](const toml::node& entry) {
-           return entry.is_number();
+           return entry.is_number() || (entry.is_array() && is_short(*entry.as_array()));
          });
 }
 
@@ -118,7 +119,7 @@ std::string value_text(const toml::node& node) {
   if (const auto* number = node.as_integer()) return fmt::format("{}", number->get());
   if (const auto* text = node.as_string()) return toml_text(std::string_view(text->get()));
   if (const auto* flag = node.as_boolean()) return flag->get() ? "true" : "false";
-  if (const auto* list = node.as_array(); list != nullptr && has_few_numbers(*list)) {
+  if (const auto* list = node.as_array(); list != nullptr && is_short(*list)) {
     std::string text = "[";
     for (const toml::node& entry : *list)
       text += (text.size() > 1 ? ", " : "") + value_text(entry);

@@ -32,7 +32,7 @@ private:
       overridden_; // path -> as on the command line
 };
 
-/// A value as it stands in messages: 0.5, "text", true, or the name of a compound type.
+/// A value as it stands in messages: 0.5, "text", true, [1, 2], or the name of another compound type.
 [[nodiscard]] std::string value_text(const toml::node& node);
 
 } // namespace ehdjet

@@ -50,6 +50,11 @@ std::string allowed_text(const Triple& triple) {
   return "three numbers [x, y, z], each " + triple.each.text();
 }
 
+std::string allowed_text(const ModeList& modes) {
+  return fmt::format("1 to {} pairs [G, lambda], G {} and lambda {}", modes.most,
+                     modes.modulus.text(), modes.relaxation_time.text());
+}
+
 std::string allowed_text(AnyText) {
   return "text in quotes";
 }
@@ -60,6 +65,14 @@ std::string allowed_text(YesNo) {
 
 std::string toml_text(double value) {
   return fmt::format("{}", value);
+}
+
+std::string toml_text(const std::vector<RelaxationMode>& modes) {
+  std::string text;
+  for (const RelaxationMode& m : modes)
+    text +=
+        fmt::format("{}[{}, {}]", text.empty() ? "" : ", ", m.modulus, m.relaxation_time);
+  return '[' + text + ']';
 }
 
 std::string toml_text(std::string_view value) {

@@ -37,18 +37,35 @@ double viscoelastic_limit(const ButcherTableau& method, double relaxation, doubl
   return limit;
 }
 
+void add_viscoelastic_rates(const ViscoelasticityConfig& fluid, const LinkState& link,
+                            ChainRates& rates) {
+  const double l = link.length, rho = link.density;
+  const double G = fluid.elastic_modulus.value_or(0), mu = fluid.viscosity.value_or(0);
+  const auto elastic = [&](double modulus) { return 2 * std::sqrt(modulus / rho) / l; };
+  const auto viscous = [&](double viscosity) { return 4 * viscosity / (rho * l * l); };
+  if (const double eta = fluid.instant_viscosity(); eta > 0) rates.damping = viscous(eta);
+  if (fluid.model == Rheology::kelvin_voigt) {
+    if (G > 0) rates.elastic = elastic(G);
+  } else if (fluid.is_tensorial()) {
+    double modulus = 0, viscosity = 0;
+    for (const RelaxationMode& m : fluid.relaxation_modes()) {
+      modulus += m.modulus, viscosity += m.modulus * m.relaxation_time;
+      rates.relaxation = std::max(rates.relaxation.value_or(0), 1 / m.relaxation_time);
+    }
+    if (modulus > 0)
+      rates.elastic = elastic(3 * modulus), rates.viscous = viscous(3 * viscosity);
+  } else if (G > 0 && mu > 0) {
+    rates.relaxation = G / mu, rates.elastic = elastic(G), rates.viscous = viscous(mu);
+  }
+}
+
 } // namespace
 
 ChainRates chain_rates(const SceneConfig& config, const LinkState& link) {
   const auto& [l, a, rho, rho_q] = link;
   EHDJET_EXPECTS(l > 0 && a > 0 && rho > 0);
   ChainRates rates;
-  if (const auto& fluid = config.viscoelasticity;
-      fluid && fluid->elastic_modulus > 0 && fluid->viscosity > 0) {
-    rates.relaxation = fluid->elastic_modulus / fluid->viscosity;
-    rates.elastic = 2 * std::sqrt(fluid->elastic_modulus / rho) / l;
-    rates.viscous = 4 * fluid->viscosity / (rho * l * l);
-  }
+  if (config.viscoelasticity) add_viscoelastic_rates(*config.viscoelasticity, link, rates);
   if (config.coulomb) {
     const double gamma =
         std::abs(rho_q) * std::sqrt(std::numbers::pi * constants::coulomb / rho) * a / l;
@@ -66,6 +83,9 @@ StabilityLimits step_limits(const ChainRates& rates, const ButcherTableau& metho
   StabilityLimits limits;
   if (rates.relaxation)
     limits.viscoelastic = viscoelastic_limit(method, *rates.relaxation, *rates.elastic);
+  else if (rates.elastic)
+    limits.viscoelastic = limit_of_oscillation(method, *rates.elastic);
+  if (rates.damping) limits.damping = longest_stable_step(method, -*rates.damping);
   if (rates.coulomb) limits.coulomb = limit_of_oscillation(method, *rates.coulomb);
   if (rates.surface_tension)
     limits.surface_tension = limit_of_oscillation(method, *rates.surface_tension);
@@ -73,8 +93,8 @@ StabilityLimits step_limits(const ChainRates& rates, const ButcherTableau& metho
 }
 
 double StabilityLimits::least() const {
-  return std::min({viscoelastic.value_or(infinity), coulomb.value_or(infinity),
-                   surface_tension.value_or(infinity)});
+  return std::min({viscoelastic.value_or(infinity), damping.value_or(infinity),
+                   coulomb.value_or(infinity), surface_tension.value_or(infinity)});
 }
 
 LinkState link_state(const Scene& scene, std::size_t k) {
@@ -93,8 +113,8 @@ std::size_t stiffest_link(const Scene& scene) {
   double fastest = 0;
   for (std::size_t k = 1; k < scene.chain.size(); ++k) {
     const ChainRates r = chain_rates(scene.config, link_state(scene, k));
-    const double rate = std::max(
-        {r.elastic.value_or(0), r.coulomb.value_or(0), r.surface_tension.value_or(0)});
+    const double rate = std::max({r.elastic.value_or(0), r.damping.value_or(0),
+                                  r.coulomb.value_or(0), r.surface_tension.value_or(0)});
     if (rate > fastest) fastest = rate, stiffest = k;
   }
   return stiffest;

@@ -1,6 +1,7 @@
 #include "ehdjet/simulation/build.hpp"
 
 #include "ehdjet/budget/balance.hpp"
+#include "ehdjet/core/csv_table.hpp"
 #include "ehdjet/core/error.hpp"
 #include "ehdjet/coulomb/make_solver.hpp"
 #include "ehdjet/events/insertion.hpp"
@@ -13,16 +14,22 @@
 #include "ehdjet/forces/external_field.hpp"
 #include "ehdjet/forces/feed_momentum.hpp"
 #include "ehdjet/forces/gravity.hpp"
+#include "ehdjet/forces/hencky_elasticity.hpp"
+#include "ehdjet/forces/herschel_bulkley.hpp"
 #include "ehdjet/forces/maxwell.hpp"
 #include "ehdjet/forces/near_field.hpp"
 #include "ehdjet/forces/nozzle_thread.hpp"
 #include "ehdjet/forces/softened_pairs.hpp"
 #include "ehdjet/forces/surface_tension.hpp"
+#include "ehdjet/forces/tensor_stress.hpp"
+#include "ehdjet/forces/viscous_stress.hpp"
 #include "ehdjet/integrators/make_integrator.hpp"
 #include "ehdjet/scene/dimensionless.hpp"
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <fmt/format.h>
 #include <utility>
 
 namespace ehdjet {
@@ -112,12 +119,28 @@ double shortest_link(const Scene& scene) {
   return vanished * shortest_link_at_start(scene);
 }
 
+/// Links of a chain without reference lengths have no elastic stress at the start.
+void rest_where_not_given(const ChainBeads& beads, JetState& jet, std::size_t reference) {
+  const BeadColumn& column = jet.table->carried()[reference];
+  const std::string name = csv_name(column.name, column.unit);
+  const bool given = beads.others.contains(name);
+  for (std::size_t k = 1; k < jet.beads(); ++k) {
+    double& length = jet.carried(reference)[k];
+    if (!given) length = link_length(jet, k);
+    if (!(length > 0))
+      throw InputError(fmt::format(
+          "chain.file: {} = {} m of bead {}: must be greater than 0 m", name, length, k));
+  }
+}
+
 JetState chain_jet(const ChainBeads& beads, std::shared_ptr<const BeadTable> table) {
   JetState jet = blank_jet(std::move(table), beads.size());
   for (std::size_t c = 0; c < jet.table->integrated().size(); ++c)
     beads.copy_to(jet.table->integrated()[c], jet.columns().column(c));
   for (std::size_t c = 0; c < jet.table->carried().size(); ++c)
     beads.copy_to(jet.table->carried()[c], jet.carried(c));
+  if (const auto reference = jet.table->find_carried("reference_length"))
+    rest_where_not_given(beads, jet, *reference);
   return jet;
 }
 
@@ -135,10 +158,14 @@ std::shared_ptr<const BeadTable> bead_table(const Scene& scene,
     table->set_error_scale(name, c.integrator.velocity_scale);
     if (c.refinement) table->set_remap(name, c.refinement->velocity);
   }
-  if (carries_stress(c)) {
+  std::vector<BeadColumn> stresses(table->integrated().begin(), table->integrated().end());
+  std::erase_if(stresses, [](const BeadColumn& b) { return b.stress_of_one == 0; });
+  for (const BeadColumn& stress : stresses) {
     if (c.integrator.stress_scale)
-      table->set_error_scale("stress", *c.integrator.stress_scale);
-    if (c.refinement) table->set_remap("stress", c.refinement->stress);
+      table->set_error_scale(stress.name,
+                             *c.integrator.stress_scale / stress.stress_of_one);
+    if (c.refinement && c.refinement->stress)
+      table->set_remap(stress.name, *c.refinement->stress);
   }
   return table;
 }
@@ -213,6 +240,73 @@ Vaporisation vaporisation_of(const EvaporationConfig& c) {
           .still_air_sherwood = c.still_air_sherwood};
 }
 
+/// The modes of a tensor law, one term each. What leaves the nozzle of a pump with a stress has been
+/// stretched there, all modes alike.
+template <class Law, class MakeLaw>
+void add_modes(const SceneConfig& c, JetDynamics& dynamics, const MakeLaw& make_law) {
+  std::vector<Law> laws;
+  for (const RelaxationMode& m : c.viscoelasticity->relaxation_modes())
+    laws.push_back(make_law(
+        UniformFluid{.elastic_modulus = m.modulus, .relaxation = 1 / m.relaxation_time}));
+  typename TensorStress<Law>::Options options;
+  if (c.nozzle && !laws.empty())
+    options.nozzle_stretch =
+        stretch_of_stress<Law>(laws, c.nozzle->nozzle_stress.value_or(0));
+  for (const Law& law : laws) {
+    if (laws.size() > 1) ++options.mode;
+    dynamics.add(std::make_unique<TensorStress<Law>>(law, options));
+  }
+}
+
+void add_kelvin_voigt(const SceneConfig& c, JetDynamics& dynamics) {
+  const double modulus = *c.viscoelasticity->elastic_modulus;
+  if (!(modulus > 0)) return;
+  HenckyElasticity::Options options{.elastic_modulus = modulus};
+  if (c.nozzle) {
+    options.length_at_birth = c.nozzle->link_length;
+    options.nozzle_stretch = std::exp(c.nozzle->nozzle_stress.value_or(0) / modulus);
+  }
+  dynamics.add(std::make_unique<HenckyElasticity>(options));
+}
+
+void add_rheology(const SceneConfig& c, JetDynamics& dynamics) {
+  const ViscoelasticityConfig& f = *c.viscoelasticity;
+  switch (f.model) {
+  case Rheology::maxwell:
+    dynamics.add(std::make_unique<Maxwell>(*f.elastic_modulus, *f.viscosity));
+    break;
+  case Rheology::upper_convected_maxwell:
+  case Rheology::oldroyd_b:
+    add_modes<UpperConvected<>>(
+        c, dynamics,
+        [](const UniformFluid& fluid) -> UpperConvected<> { return {.fluid = fluid}; });
+    break;
+  case Rheology::giesekus:
+    add_modes<Giesekus<>>(c, dynamics, [&f](const UniformFluid& fluid) -> Giesekus<> {
+      return {.fluid = fluid, .mobility = f.mobility.value_or(0)};
+    });
+    break;
+  case Rheology::fene_p:
+    add_modes<FeneP<>>(c, dynamics, [&f](const UniformFluid& fluid) -> FeneP<> {
+      return {.fluid = fluid, .extensibility = f.extensibility.value()};
+    });
+    break;
+  case Rheology::kelvin_voigt:
+    add_kelvin_voigt(c, dynamics);
+    break;
+  case Rheology::herschel_bulkley:
+    dynamics.add(std::make_unique<HerschelBulkley>(
+        *f.elastic_modulus, *f.viscosity,
+        HerschelBulkleyCurve{.consistency = f.consistency.value_or(0),
+                             .flow_index = f.flow_index.value_or(1),
+                             .yield_stress = f.yield_stress.value_or(0),
+                             .regularization = f.regularization.value_or(0)}));
+    break;
+  }
+  if (const double eta = f.instant_viscosity(); eta > 0)
+    dynamics.add(std::make_unique<ViscousStress>(eta));
+}
+
 std::unique_ptr<JetDynamics> compose_dynamics(const Scene& scene,
                                               std::shared_ptr<const Inflow> inflow) {
   const SceneConfig& c = scene.config;
@@ -247,9 +341,7 @@ std::unique_ptr<JetDynamics> compose_dynamics(const Scene& scene,
   if (c.evaporation)
     dynamics->add(std::make_unique<Evaporation>(air_flow(scene), c.evaporation->solution(),
                                                 vaporisation_of(*c.evaporation)));
-  if (carries_stress(c))
-    dynamics->add(std::make_unique<Maxwell>(c.viscoelasticity->elastic_modulus,
-                                            c.viscoelasticity->viscosity));
+  if (carries_stress(c)) add_rheology(c, *dynamics);
   return dynamics;
 }
 

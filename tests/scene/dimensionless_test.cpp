@@ -60,8 +60,8 @@ TEST(DimensionlessGroups, do_not_change_under_similarity) {
        {&c.nozzle->radius, &c.nozzle->link_length, &c.nozzle->amplitude,
         &*c.nozzle->velocity, &c.collector->distance, &c.gravity->acceleration})
     *length *= s;
-  c.viscoelasticity->elastic_modulus *= s * s;
-  c.viscoelasticity->viscosity *= s * s;
+  *c.viscoelasticity->elastic_modulus *= s * s;
+  *c.viscoelasticity->viscosity *= s * s;
   c.surface_tension->coefficient *= s * s * s;
   *c.field->potential *= s * s;
   const auto after = dimensionless_groups(c);

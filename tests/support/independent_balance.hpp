@@ -42,8 +42,8 @@ public:
     if (s.field) field_ = field_strength(s);
     if (s.gravity) gravity_ = s.gravity->acceleration;
     if (s.viscoelasticity)
-      fluid_ = {.elastic_modulus = s.viscoelasticity->elastic_modulus,
-                .viscosity = s.viscoelasticity->viscosity};
+      fluid_ = {.elastic_modulus = s.viscoelasticity->elastic_modulus.value(),
+                .viscosity = s.viscoelasticity->viscosity.value()};
     if (s.surface_tension && s.surface_tension->form == SurfaceTensionForm::line)
       line_tension_ = s.surface_tension->coefficient;
     else if (s.surface_tension)

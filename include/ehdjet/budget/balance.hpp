@@ -18,8 +18,9 @@ namespace ehdjet {
 
 /// Energies and momentum of a jet.
 struct JetEnergies {
-  double kinetic = 0;           ///< of beads that move freely [J]
-  std::vector<double> stored;   ///< of the terms that store energy, in their order [J]
+  double kinetic = 0; ///< of beads that move freely [J]
+  std::vector<double>
+      stored; ///< energies of one name together, in the order of the terms [J]
   Vec3 momentum = Vec3::Zero(); ///< sum m v of beads that move freely [kg m/s]
   double momentum_size = 0;     ///< sum m |v| of the same [kg m/s]
 
@@ -70,7 +71,8 @@ private:
   std::vector<Channel> channels_;
   std::vector<TermAccount> accounts_; // of all terms
   std::vector<std::size_t> own_;      // channel of each term, if it has one
-  std::vector<TermAccount> stores_;   // of the terms that store energy
+  std::vector<TermAccount> stores_;   // of the terms that store energy, one per name
+  std::vector<std::size_t> store_of_; // of each term, if it stores energy
   std::array<std::size_t, supports> support_channel_{};
   ActingChain chain_, chain_before_;
   std::vector<Support> support_of_;

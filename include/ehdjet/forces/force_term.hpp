@@ -36,6 +36,8 @@ struct TermAccount {
   /// mean that the momentum comes from outside; without them the forces between the beads sum to
   /// zero.
   Channel channel = {};
+  /// `add_power` tells all that the force exchanges with the outside, as if the term stored an energy.
+  bool tells_all_power = false;
 };
 
 /// One additive contribution to the equations of motion (model 2). A term that a scene does not

@@ -1,43 +1,49 @@
 #pragma once
 
-#include "ehdjet/forces/force_term.hpp"
-
-#include <vector>
+#include "ehdjet/forces/axial_stress.hpp"
+#include "ehdjet/forces/fluid.hpp"
 
 namespace ehdjet {
 
-/// Maxwell fluid: one axial stress per link, elastic at short and viscous at long times.
+/// The law of a Maxwell fluid, elastic at short and viscous at long times:
 ///
-///     d sigma_k/dt = (G/l_k) (v_k - v_(k-1)).t_k - (G/mu) sigma_k       (model 2)
-///     F_k = - pi a_k^2 sigma_k t_k + pi a_(k+1)^2 sigma_(k+1) t_(k+1),  pi a_k^2 = V_k/l_k
+///     d sigma/dt = G e - (G/mu) sigma                                   (model 2)
 ///
-/// units  : G [Pa], mu [Pa s], sigma [Pa]
-/// laws   : internal forces sum to zero; the rate vanishes under rigid motion
-/// A landed bead keeps its stress, and counts as at rest for the link below it (model 5). The stress
-/// of a link that is fed follows model 4.3.
 /// source : Reneker, Yarin, Fong & Koombhongse, J. Appl. Phys. 87 (2000) 4531
-class Maxwell final : public ForceTerm {
-public:
-  Maxwell(double elastic_modulus, double viscosity); ///< both > 0
-  void add_force(const Stage& stage, Vec3View force) override;
-  /// stress (integrated, of links) [Pa]
-  [[nodiscard]] std::vector<BeadColumn> columns() const override;
-  void bind(const BeadTable& table) override;
-  void set_column_rates(const Stage& stage, JetColumns<double> rates) override;
-  void add_derivatives(const Stage& stage, LinkDerivatives& links) override;
-  [[nodiscard]] std::string_view name() const override { return "viscoelasticity"; }
-  [[nodiscard]] TermAccount account() const override;
-  [[nodiscard]] double energy(const Stage& stage) override; ///< sum V sigma^2/(2 G)
-  void add_power(const Stage& stage, Exchange& exchange) override;
-  [[nodiscard]] double feeding_power(const Stage& stage, const LinkContent& rate) override;
-  void add_tension(const Stage& stage, std::span<double> tension) override;
+template <class Fluid = UniformFluid>
+struct MaxwellLaw {
+  Fluid fluid;
 
-private:
-  [[nodiscard]] double entry_stress(const Stage& stage) const;
-  [[nodiscard]] double fed_rate(const Stage& stage) const;
-  double elastic_modulus_, relaxation_rate_;
-  std::size_t stress_ = 0;                 // its column
-  std::vector<double> tension_per_length_; // V sigma / l^2 [N/m]
+  /// Whether the rate is the sum of one of e and one of sigma, the former in proportion to e.
+  static constexpr bool is_linear = true;
+
+  [[nodiscard]] double modulus(std::size_t k) const { return fluid.modulus(k); }
+  [[nodiscard]] double relaxation_rate(std::size_t k) const {
+    return fluid.relaxation_rate(k);
+  }
+  [[nodiscard]] double typical_modulus() const { return fluid.typical_modulus(); }
+  /// L [Pa/s] of link k for e = stretching/area; the area is 1 or l^2.
+  [[nodiscard]] double rate(std::size_t k, double stretching, double area,
+                            double sigma) const {
+    return modulus(k) * stretching / area - relaxation_rate(k) * sigma;
+  }
+  /// dL/de [Pa].
+  [[nodiscard]] double slope(std::size_t k, double /*strain_rate*/) const {
+    return modulus(k);
+  }
+  /// Per volume: sigma e less the growth of sigma^2/(2 G) by L [W/m^3].
+  [[nodiscard]] double dissipation(std::size_t k, double volume, double /*strain_rate*/,
+                                   double sigma) const {
+    return volume * sigma * sigma * relaxation_rate(k) / modulus(k);
+  }
+  static constexpr const char* dissipation_meaning =
+      "lost so far to viscosity, sum V sigma^2/mu over time";
+};
+
+/// Maxwell fluid: one axial stress per link. `AxialStress` has the equations.
+class Maxwell final : public AxialStress<MaxwellLaw<>> {
+public:
+  Maxwell(double elastic_modulus, double viscosity); ///< G [Pa], mu [Pa s], both > 0
 };
 
 } // namespace ehdjet

@@ -51,6 +51,8 @@ struct BeadColumn {
   double error_scale = 1;
   double at_birth = 0;               ///< of a new bead at the nozzle
   std::optional<Drying> drying = {}; ///< integrated, of links: what evaporates
+  /// Integrated: the stress that one `unit` stands for; 0: the column is no stress [Pa].
+  double stress_of_one = 0;
 };
 
 /// The columns of a jet: x, y, z, vx, vy, vz (integrated), volume, mass, charge (carried), and

@@ -39,6 +39,16 @@ enum class CollectorCharge { grounded, kept };
 enum class NearFieldForm { point, free_surface, fixed };
 /// How links that have become too long are refined (model 7).
 enum class RefinedMesh { redistribute, cut };
+/// Laws of the stress in the fluid (model 2, 2.1 to 2.3).
+enum class Rheology {
+  maxwell,
+  upper_convected_maxwell,
+  oldroyd_b,
+  giesekus,
+  fene_p,
+  kelvin_voigt,
+  herschel_bulkley
+};
 /// What is recorded of each refinement.
 enum class RefinementRecords { none, sums, energies };
 /// Norm over the components of the scaled error estimate.
@@ -106,11 +116,36 @@ struct CoulombConfig {
   bool operator==(const CoulombConfig&) const = default;
 };
 
-/// Maxwell fluid (model 2).
+/// A spring of a polymer and how fast its stress relaxes (model 2.1).
+struct RelaxationMode {
+  double modulus = 0;         ///< G [Pa]
+  double relaxation_time = 0; ///< lambda [s]
+  bool operator==(const RelaxationMode&) const = default;
+};
+
+/// The rheology of the fluid (model 2).
 struct ViscoelasticityConfig {
-  double elastic_modulus = 0; ///< G [Pa]
-  double viscosity = 0;       ///< mu [Pa s]
+  std::optional<double> elastic_modulus =
+      {};                               ///< G [Pa]; like mu always there without modes
+  std::optional<double> viscosity = {}; ///< mu [Pa s]
+  Rheology model = Rheology::maxwell;
+  std::optional<std::vector<RelaxationMode>> modes = {}; ///< instead of G and mu
+  std::optional<double> mobility = {};                   ///< alpha_G of Giesekus [-]
+  std::optional<double> solvent_viscosity = {};          ///< mu_s [Pa s]
+  std::optional<double> extensibility = {};              ///< L2 of FENE-P [-]
+  // Of Herschel-Bulkley.
+  std::optional<double> consistency = {};    ///< K [Pa s^n]
+  std::optional<double> flow_index = {};     ///< n [-]
+  std::optional<double> yield_stress = {};   ///< tau_Y [Pa]
+  std::optional<double> regularization = {}; ///< m [s]
   bool operator==(const ViscoelasticityConfig&) const = default;
+
+  /// Whether the stress is a tensor (model 2.1).
+  [[nodiscard]] bool is_tensorial() const;
+  /// Those with a stress; without `modes` G and mu/G are the only one.
+  [[nodiscard]] std::vector<RelaxationMode> relaxation_modes() const;
+  /// eta of the stress eta e that follows the strain rate at once [Pa s].
+  [[nodiscard]] double instant_viscosity() const;
 };
 
 /// Air around the jet (model 2.1).
@@ -169,8 +204,8 @@ struct RefinementConfig {
   RefinedMesh mesh = RefinedMesh::redistribute;
   LinkRemap remap = LinkRemap::conservative;
   ColumnRemap velocity = ColumnRemap::spline;
-  ColumnRemap stress = ColumnRemap::spline;
-  std::optional<double> coarsen = {};  ///< join links together shorter than this [m]
+  std::optional<ColumnRemap> stress = {}; ///< none: spline; conservative for tensors
+  std::optional<double> coarsen = {};     ///< join links together shorter than this [m]
   std::optional<double> shortest = {}; ///< join links shorter than so many radii [-]
   bool operator==(const RefinementConfig&) const = default;
 };
@@ -255,7 +290,7 @@ struct ChainBeads {
   std::map<std::string, Other> others; ///< by their names in CSV, as stress_pa
 
   [[nodiscard]] std::size_t size() const { return x.size(); }
-  /// Fills a column of a jet, with zeros if the file does not have it.
+  /// Fills a column of a jet, with its value at birth if the file does not have it.
   /// errors : InputError if what the file has is not numbers
   void copy_to(const BeadColumn& column, std::span<double> out) const;
 };

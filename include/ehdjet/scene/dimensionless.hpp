@@ -7,7 +7,7 @@
 namespace ehdjet {
 
 /// Dimensionless groups of a jet from a nozzle. With q, m, a0 the charge, mass and radius of a
-/// bead at the nozzle, tau = mu/G and k_C the Coulomb constant:
+/// bead at the nozzle, tau = mu/G (of modes: G and mu are sums) and k_C the Coulomb constant:
 ///
 ///     L0  = sqrt(k_C q^2 / (pi a0^2 G))       unit of length; tau is the unit of time
 ///     Q   = k_C q^2 mu^2 / (L0^3 m G^2)       Coulomb force
@@ -38,14 +38,14 @@ struct DimensionlessGroups {
   std::optional<double> gravity;         ///< Fg
 };
 
-/// Absent without a nozzle, charge or Maxwell fluid: then there is no L0 or no tau.
+/// Absent without a nozzle, charge or viscoelastic fluid: then there is no L0 or no tau.
 std::optional<DimensionlessGroups> dimensionless_groups(const SceneConfig& config);
 
 /// The strength of the external field along +x, however it is given; 0 without [field] [V/m].
 double field_strength(const SceneConfig& config);
 
-/// Whether links have a stress: without elasticity, or without viscosity to hold it, it is zero at all
-/// times.
+/// Whether links have a stress. That of a Maxwell fluid without elasticity, or without viscosity to hold
+/// it, is zero at all times.
 bool carries_stress(const SceneConfig& config);
 
 } // namespace ehdjet

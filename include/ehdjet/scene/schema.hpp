@@ -60,6 +60,11 @@ struct Words {
 struct Triple {
   Range each;
 };
+/// Pairs of a modulus and a relaxation time.
+struct ModeList {
+  Range modulus, relaxation_time;
+  std::size_t most = 0;
+};
 struct AnyText {};
 struct YesNo {};
 
@@ -98,6 +103,14 @@ inline constexpr Choices<LinkRemap, 2> refinement_remaps{
     {{"conservative", LinkRemap::conservative}, {"paper", LinkRemap::paper}}};
 inline constexpr Choices<ColumnRemap, 2> column_remaps{
     {{"spline", ColumnRemap::spline}, {"conservative", ColumnRemap::conservative}}};
+inline constexpr Choices<Rheology, 7> rheologies{
+    {{"maxwell", Rheology::maxwell},
+     {"upper-convected-maxwell", Rheology::upper_convected_maxwell},
+     {"oldroyd-b", Rheology::oldroyd_b},
+     {"giesekus", Rheology::giesekus},
+     {"fene-p", Rheology::fene_p},
+     {"kelvin-voigt", Rheology::kelvin_voigt},
+     {"herschel-bulkley", Rheology::herschel_bulkley}}};
 inline constexpr Choices<RefinementRecords, 3> refinement_records{
     {{"none", RefinementRecords::none},
      {"sums", RefinementRecords::sums},
@@ -117,6 +130,7 @@ std::string_view name_of(Enum value, const Choices<Enum, N>& choices) {
 [[nodiscard]] std::string allowed_text(const Range& range); ///< with unit
 [[nodiscard]] std::string allowed_text(const Words& words); ///< "a" or "b"
 [[nodiscard]] std::string allowed_text(const Triple& triple);
+[[nodiscard]] std::string allowed_text(const ModeList& modes);
 [[nodiscard]] std::string allowed_text(AnyText);
 [[nodiscard]] std::string allowed_text(YesNo);
 template <class Enum, std::size_t N>
@@ -129,8 +143,11 @@ std::string allowed_text(const Choices<Enum, N>& choices) {
 /// A value as TOML reads it back: shortest digits that give the same bits, quoted strings.
 [[nodiscard]] std::string toml_text(double value);
 [[nodiscard]] std::string toml_text(std::string_view value);
+[[nodiscard]] std::string toml_text(const std::vector<RelaxationMode>& modes);
 
 inline constexpr double longest_time = 1e6; // [s]
+inline constexpr Range elastic_moduli = non_negative("Pa", 1e12);
+inline constexpr Range viscosities = non_negative("Pa s", 1e6);
 
 template <class V>
 void describe(V& v, RunConfig& c) {
@@ -261,10 +278,37 @@ void describe(V& v, CoulombConfig& c) {
 
 template <class V>
 void describe(V& v, ViscoelasticityConfig& c) {
-  v.required("elastic_modulus", c.elastic_modulus, non_negative("Pa", 1e12),
-             "elastic modulus, G; with 0 there is no stress");
-  v.required("viscosity", c.viscosity, non_negative("Pa s", 1e6),
-             "viscosity, mu; with 0 there is no stress");
+  v.optional("model", c.model, rheologies,
+             "law of the stress: one axial stress (the paper), a stress tensor, an elastic "
+             "body with a dashpot, or a flow curve with a yield stress");
+  v.optional("elastic_modulus", c.elastic_modulus, elastic_moduli,
+             "elastic modulus, G; with 0 a Maxwell fluid has no stress",
+             "required unless modes are given");
+  v.optional("viscosity", c.viscosity, viscosities,
+             "viscosity, mu; mu/G is the relaxation time; with 0 a Maxwell fluid has no "
+             "stress",
+             "required unless modes are given");
+  v.optional("modes", c.modes,
+             ModeList{positive("Pa", 1e12), positive("s", longest_time), 16},
+             "moduli and relaxation times of a tensor law whose stresses add up",
+             "elastic_modulus and viscosity are the only one");
+  v.optional("mobility", c.mobility, between("-", 0, 1),
+             "how much faster high stress relaxes, alpha_G", "required with giesekus");
+  v.optional("solvent_viscosity", c.solvent_viscosity, non_negative("Pa s", 1e6),
+             "viscosity of the solvent, mu_s, which adds 3 mu_s e to the stress",
+             "required with oldroyd-b, 0 with giesekus and fene-p");
+  v.optional("extensibility", c.extensibility, Range{"-", 3, 1e9, true},
+             "largest square of the stretch of the polymer, L2", "required with fene-p");
+  v.optional("consistency", c.consistency, non_negative("Pa s^n", 1e9),
+             "K of the flow curve tau_Y (1 - exp(-m |e|)) + K |e|^n",
+             "required with herschel-bulkley");
+  v.optional("flow_index", c.flow_index, positive("-", 3), "n of the flow curve",
+             "required with herschel-bulkley");
+  v.optional("yield_stress", c.yield_stress, non_negative("Pa", 1e9),
+             "tau_Y of the flow curve", "0 with herschel-bulkley");
+  v.optional("regularization", c.regularization, positive("s", longest_time),
+             "m of the flow curve: below 1/m the fluid creeps",
+             "required with a yield_stress");
 }
 
 template <class V>
@@ -342,7 +386,8 @@ void describe(V& v, RefinementConfig& c) {
   v.optional("velocity", c.velocity, column_remaps,
              "Akima spline, or average that keeps the momentum");
   v.optional("stress", c.stress, column_remaps,
-             "Akima spline, or average that keeps the sum of volume times stress");
+             "Akima spline, or average that keeps the sum of volume times stress",
+             "spline; conservative for stress tensors");
   v.optional("coarsen", c.coarsen, positive("m", 1),
              "join neighbouring links that are together no longer than this",
              "links are never joined");
@@ -377,7 +422,7 @@ void describe(V& v, IntegratorConfig& c) {
   v.optional("velocity_scale", c.velocity_scale, positive("m/s", 1e6),
              "the same for velocities");
   v.optional("stress_scale", c.stress_scale, positive("Pa", 1e12), "the same for stresses",
-             "0.1 elastic_modulus");
+             "0.1 elastic_modulus, of each mode its own");
   v.optional("norm", c.norm, error_norms, "norm over all components of the scaled error");
   v.optional("events", c.events, event_placements,
              "insertion and landing happen at their instants inside a step, or at its end");
@@ -433,7 +478,7 @@ void describe(V& v, SceneConfig& c) {
   v.table("gravity", c.gravity, "Gravity.");
   v.table("coulomb", c.coulomb,
           "Mutual Coulomb force of all beads, the nozzle's included.");
-  v.table("viscoelasticity", c.viscoelasticity, "The fluid is a Maxwell fluid.");
+  v.table("viscoelasticity", c.viscoelasticity, "The stress of the fluid: its rheology.");
   v.table("surface_tension", c.surface_tension, "Surface tension.");
   v.table("air", c.air, "Drag of the air on the jet.");
   v.table("evaporation", c.evaporation,

@@ -18,9 +18,10 @@ struct LinkState {
 
 /// Fastest rates of the linearised chain, for the terms that the scene has [1/s].
 ///
-///     relaxation      1/tau = G/mu
-///     elastic         omega_el = 2 sqrt(G/rho) / l
-///     viscous         4 mu / (rho l^2)
+///     relaxation      1/tau = G/mu; with modes the fastest
+///     elastic         omega_el = 2 sqrt(G/rho) / l; a stress tensor has three times the sum of its G
+///     viscous         4 mu / (rho l^2), with 3 mu for a stress tensor: after relaxation
+///     damping         4 eta / (rho l^2), eta = 3 mu_s or mu of a Kelvin-Voigt body: at once
 ///     Coulomb         sqrt(7 zeta(3)) Gamma = 2.901 Gamma,   Gamma = rho_q sqrt(pi k_C/rho) a/l
 ///     growth          sqrt(7 zeta(3)/2) Gamma = 2.051 Gamma  (bending instability: not stiff)
 ///     surface tension paper: 2 sqrt(alpha/(rho l^3))         line: 2 sqrt(alpha/(rho a)) / l
@@ -29,7 +30,7 @@ struct LinkState {
 ///          opposite phase; the Coulomb sums are 8 sum 1/j^3 over odd j = 7 zeta(3)
 /// checked: Stability tests, against a table computed independently
 struct ChainRates {
-  std::optional<double> relaxation, elastic, viscous;
+  std::optional<double> relaxation, elastic, viscous, damping;
   std::optional<double> coulomb, coulomb_growth;
   std::optional<double> surface_tension;
 };
@@ -40,7 +41,7 @@ ChainRates chain_rates(const SceneConfig& config, const LinkState& link);
 ///
 /// The viscoelastic limit is the least over the modes s^2 + s/tau + (omega_el sin(kappa/2))^2 = 0.
 struct StabilityLimits {
-  std::optional<double> viscoelastic, coulomb, surface_tension;
+  std::optional<double> viscoelastic, damping, coulomb, surface_tension;
 
   [[nodiscard]] double least() const; ///< infinite if no term limits the step
 };

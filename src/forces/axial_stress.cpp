@@ -1,33 +1,34 @@
-#include "ehdjet/forces/maxwell.hpp"
+#include "ehdjet/forces/axial_stress.hpp"
 
 #include "ehdjet/core/error.hpp"
 #include "ehdjet/core/parallel.hpp"
+#include "ehdjet/forces/herschel_bulkley.hpp"
+#include "ehdjet/forces/maxwell.hpp"
 
 #include <cmath>
 
+#include "link_strain.hpp"
 #include "link_tension.hpp"
 
 namespace ehdjet {
 
-Maxwell::Maxwell(double elastic_modulus, double viscosity)
-    : elastic_modulus_(elastic_modulus)
-    , relaxation_rate_(elastic_modulus / viscosity) {
-  EHDJET_EXPECTS(elastic_modulus > 0 && viscosity > 0);
-}
-
-std::vector<BeadColumn> Maxwell::columns() const {
+template <class Law>
+std::vector<BeadColumn> AxialStress<Law>::columns() const {
   return {{.name = "stress",
            .unit = "Pa",
            .description = "of that link",
            .weight = "volume",
-           .error_scale = 0.1 * elastic_modulus_}};
+           .error_scale = 0.1 * law_.typical_modulus(),
+           .stress_of_one = 1}};
 }
 
-void Maxwell::bind(const BeadTable& table) {
+template <class Law>
+void AxialStress<Law>::bind(const BeadTable& table) {
   stress_ = table.find_integrated("stress").value();
 }
 
-void Maxwell::add_force(const Stage& stage, Vec3View force) {
+template <class Law>
+void AxialStress<Law>::add_force(const Stage& stage, Vec3View force) {
   const Links& links = stage.links();
   const double *l = links.length.data(), *v = stage.volume.data(),
                *sigma = stage.columns.column(stress_).data();
@@ -39,19 +40,19 @@ void Maxwell::add_force(const Stage& stage, Vec3View force) {
   add_link_tension(links, tension_per_length_, stage.targets, force);
 }
 
-void Maxwell::set_column_rates(const Stage& stage, JetColumns<double> rates) {
+template <class Law>
+void AxialStress<Law>::set_column_rates(const Stage& stage, JetColumns<double> rates) {
   const Links& links = stage.links();
   const auto v = stage.columns.velocity();
   const double *l = links.length.data(), *dx = links.dx.data(), *dy = links.dy.data(),
                *dz = links.dz.data(), *vx = v.x.data(), *vy = v.y.data(), *vz = v.z.data(),
                *sigma = stage.columns.column(stress_).data();
   double* out = rates.column(stress_).data();
-  const double g = elastic_modulus_, relaxation = relaxation_rate_;
-  const auto link = [=](std::size_t k, std::size_t upstream) {
+  const auto link = [=, law = law_](std::size_t k, std::size_t upstream) {
     const double stretching = (vx[k] - vx[upstream]) * dx[k]
                               + (vy[k] - vy[upstream]) * dy[k]
                               + (vz[k] - vz[upstream]) * dz[k];
-    out[k] = g * stretching / (l[k] * l[k]) - relaxation * sigma[k];
+    out[k] = law.rate(k, stretching, l[k] * l[k], sigma[k]);
   };
   for (std::size_t k = stage.targets.begin; k < links.head; ++k) out[k] = 0;
   std::size_t begin = links.beads.begin;
@@ -67,25 +68,30 @@ void Maxwell::set_column_rates(const Stage& stage, JetColumns<double> rates) {
   for (const LandedBead& b : stage.landed) {
     const std::size_t k = b.bead + 1;
     if (k < links.beads.begin || k >= links.beads.end) continue;
-    const double impact = vx[b.bead] * dx[k] + vy[b.bead] * dy[k] + vz[b.bead] * dz[k];
-    out[k] += g * impact / (l[k] * l[k]);
+    if constexpr (Law::is_linear) {
+      const double impact = vx[b.bead] * dx[k] + vy[b.bead] * dy[k] + vz[b.bead] * dz[k];
+      out[k] += law_.modulus(k) * impact / (l[k] * l[k]);
+    } else {
+      out[k] = law_.rate(k, strain_rate(stage, k), 1, sigma[k]);
+    }
   }
 }
 
 // Fluid that enters link 1 takes its section A_1 at once, which stretches it elastically:
 //
 //     sigma_e = sigma_in + G ln(A0/A_1),   A_1 = V_1/l_1                               (model 4.3)
-double Maxwell::entry_stress(const Stage& stage) const {
+template <class Law>
+double AxialStress<Law>::entry_stress(const Stage& stage) const {
   const double section = stage.volume[1] / stage.links().length[1];
-  return stage.feed->stress + elastic_modulus_ * std::log(stage.feed->section / section);
+  return stage.feed->stress + law_.modulus(1) * std::log(stage.feed->section / section);
 }
 
 // The fluid that is in link 1 already is strained by -d ln A_1/dt: its upper end moves at Q/A_1. New
 // fluid is mixed in by volume.
 //
-//     dsigma_1/dt = G ((v_1 - w0).t_1/l_1 - Q/V_1) - sigma_1/tau + (Q/V_1) (sigma_e - sigma_1)
-//                                                                                    (model 4.3)
-double Maxwell::fed_rate(const Stage& stage) const {
+//     dsigma_1/dt = L((v_1 - w0).t_1/l_1 - Q/V_1, sigma_1) + (Q/V_1) (sigma_e - sigma_1)  (model 4.3)
+template <class Law>
+double AxialStress<Law>::fed_rate(const Stage& stage) const {
   const auto v = stage.columns.velocity();
   Vec3 nozzle = v[0];
   nozzle.x() = 0; // w0: the nozzle stays in its plane
@@ -93,64 +99,61 @@ double Maxwell::fed_rate(const Stage& stage) const {
   const double stretching = (v[1] - nozzle).dot(stage.links().vector(1)) / (l * l);
   const double filling = stage.feed->flow_rate / stage.volume[1];
   const double sigma = stage.columns.column(stress_)[1];
-  return elastic_modulus_ * (stretching - filling) - relaxation_rate_ * sigma
+  return law_.rate(1, stretching - filling, 1, sigma)
          + filling * (entry_stress(stage) - sigma);
 }
 
-// With F = V sigma d/l^2, sigma' = G (w.d)/l^2 - sigma/tau:
+// With F = V sigma d/l^2, sigma' = L((w.d)/l^2, sigma), G = dL/de:
 //     dF/dd = V sigma/l^2 (I - 2 t t^T),      dF/d sigma = V d/l^2
 //     d sigma'/dw = G d/l^2,                  d sigma'/dd = G/l^2 (w - 2 (w.t) t)
-void Maxwell::add_derivatives(const Stage& stage, LinkDerivatives& out) {
+template <class Law>
+void AxialStress<Law>::add_derivatives(const Stage& stage, LinkDerivatives& out) {
   const Links& links = stage.links();
-  const auto v = stage.columns.velocity();
   const auto sigma = stage.columns.column(stress_);
-  out.sigma = stress_;
-  auto landed = stage.landed.begin();
+  LinkDerivatives::Column& column = out.add_column(stress_);
   for (std::size_t k = links.first; k <= links.last; ++k) {
-    const std::size_t upstream = links.upstream(k);
-    while (landed != stage.landed.end() && landed->bead < upstream) ++landed;
-    const bool rests = landed != stage.landed.end() && landed->bead == upstream;
-    const double l = links.length[k], stiffness = elastic_modulus_ / (l * l);
-    const Vec3 d = links.vector(k), t = d / l;
-    const bool fed = stage.feed != nullptr && k == 1;
-    Vec3 w = rests ? v[k] : Vec3(v[k] - v[upstream]);
-    if (fed) w.x() = v.x[k]; // relative to the nozzle, not to the fluid in it
+    const LinkMotion motion = motion_of(stage, k);
+    const double l = links.length[k];
+    const double stiffness = law_.slope(k, motion.strain_rate) / (l * l);
+    const Vec3 d = links.vector(k), t = d / l, &w = motion.velocity;
     const double area_per_length = stage.volume[k] / (l * l);
     out.add_pull(k,
                  area_per_length * sigma[k] * (Mat3::Identity() - 2 * t * t.transpose()));
-    out.tension[k] += area_per_length * d;
-    out.stretching[k] += stiffness * d;
-    out.turning[k] += stiffness * (w - 2 * w.dot(t) * t);
-    out.relaxation[k] += relaxation_rate_;
-    if (!fed) continue;
+    column.tension[k] += area_per_length * d;
+    column.stretching[k] += stiffness * d;
+    column.turning[k] += stiffness * (w - 2 * w.dot(t) * t);
+    column.relaxation[k] += law_.relaxation_rate(k);
+    if (!is_fed(stage, k)) continue;
     const double filling = stage.feed->flow_rate / stage.volume[k];
-    out.relaxation[k] += filling;
-    out.turning[k] += filling * elastic_modulus_ / (l * l) * d; // G ln(l_1)
+    column.relaxation[k] += filling;
+    column.turning[k] += filling * law_.modulus(k) / (l * l) * d; // G ln(l_1)
   }
 }
 
-TermAccount Maxwell::account() const {
-  return {
-      .energy = "elastic_energy",
-      .energy_meaning = "sum V sigma^2/(2 G)",
-      .channel = {.name = "dissipation",
-                  .energy = "dissipated_energy",
-                  .energy_meaning = "lost so far to viscosity, sum V sigma^2/mu over time",
-                  .loss = true}};
+template <class Law>
+TermAccount AxialStress<Law>::account() const {
+  return {.energy = "elastic_energy",
+          .energy_meaning = "sum V sigma^2/(2 G)",
+          .channel = {.name = "dissipation",
+                      .energy = "dissipated_energy",
+                      .energy_meaning = Law::dissipation_meaning,
+                      .loss = true}};
 }
 
-double Maxwell::energy(const Stage& stage) {
+template <class Law>
+double AxialStress<Law>::energy(const Stage& stage) {
   const Links& links = stage.links();
   const auto sigma = stage.columns.column(stress_);
   double energy = 0;
   for (std::size_t k = links.first; k <= links.last; ++k)
-    energy += stage.volume[k] * sigma[k] * sigma[k] / (2 * elastic_modulus_);
+    energy += stage.volume[k] * sigma[k] * sigma[k] / (2 * law_.modulus(k));
   return energy;
 }
 
-// d/dt V sigma^2/(2 G) = T t.(v_k - v_(k-1)) - V sigma^2/mu, with the velocity of the fluid, v_s
+// d/dt V sigma^2/(2 G) = T t.(v_k - v_(k-1)) less what the law dissipates (V sigma^2/mu), with the velocity of the fluid, v_s
 // included, at the nozzle. The link of a bead that has landed keeps its stress, and so its energy.
-void Maxwell::add_power(const Stage& stage, Exchange& exchange) {
+template <class Law>
+void AxialStress<Law>::add_power(const Stage& stage, Exchange& exchange) {
   const Links& links = stage.links();
   const auto v = stage.columns.velocity();
   const auto sigma = stage.columns.column(stress_);
@@ -164,14 +167,14 @@ void Maxwell::add_power(const Stage& stage, Exchange& exchange) {
           pull.dot(up_moves ? Vec3(v[up]) : exchange.led(up));
       continue;
     }
-    exchange.own.energy -=
-        volume * sigma[k] * sigma[k] * relaxation_rate_ / elastic_modulus_;
-    if (stage.feed != nullptr && k == 1) {
+    const double e = Law::is_linear ? 0.0 : strain_rate(stage, k);
+    exchange.own.energy -= law_.dissipation(k, volume, e, sigma[k]);
+    if (is_fed(stage, k)) {
       // New fluid brings sigma_e^2/(2 G) per volume, and loses (sigma - sigma_e)^2/(2 G) when it is
       // mixed in; that it flows in against the tension costs Q sigma.
       const double sigma_1 = sigma[k], mixed = sigma_1 - entry_stress(stage);
       exchange.by_support_of(up).energy -=
-          stage.feed->flow_rate * sigma_1 * (1 + mixed / elastic_modulus_);
+          stage.feed->flow_rate * sigma_1 * (1 + mixed / law_.modulus(k));
       continue;
     }
     if (!up_moves && exchange.support(up) != Support::collector)
@@ -179,16 +182,37 @@ void Maxwell::add_power(const Stage& stage, Exchange& exchange) {
   }
 }
 
-double Maxwell::feeding_power(const Stage& stage, const LinkContent& rate) {
+template <class Law>
+double AxialStress<Law>::feeding_power(const Stage& stage, const LinkContent& rate) {
   const double sigma = stage.columns.column(stress_)[1];
-  return rate.volume * sigma * sigma / (2 * elastic_modulus_);
+  return rate.volume * sigma * sigma / (2 * law_.modulus(1));
 }
 
-void Maxwell::add_tension(const Stage& stage, std::span<double> tension) {
+template <class Law>
+void AxialStress<Law>::add_tension(const Stage& stage, std::span<double> tension) {
   const Links& links = stage.links();
   const auto sigma = stage.columns.column(stress_);
   for (std::size_t k = links.first; k <= links.last; ++k)
     tension[k] += stage.volume[k] * sigma[k] / links.length[k];
+}
+
+template class AxialStress<MaxwellLaw<>>;
+template class AxialStress<HerschelBulkleyLaw<>>;
+
+Maxwell::Maxwell(double elastic_modulus, double viscosity)
+    : AxialStress({.fluid = {.elastic_modulus = elastic_modulus,
+                             .relaxation = elastic_modulus / viscosity}}) {
+  EHDJET_EXPECTS(elastic_modulus > 0 && viscosity > 0);
+}
+
+HerschelBulkley::HerschelBulkley(double elastic_modulus, double viscosity,
+                                 const HerschelBulkleyCurve& curve)
+    : AxialStress({.fluid = {.elastic_modulus = elastic_modulus,
+                             .relaxation = elastic_modulus / viscosity},
+                   .curve = curve}) {
+  EHDJET_EXPECTS(elastic_modulus > 0 && viscosity > 0);
+  EHDJET_EXPECTS(curve.consistency >= 0 && curve.flow_index > 0 && curve.yield_stress >= 0
+                 && curve.regularization >= 0);
 }
 
 } // namespace ehdjet
