@@ -32,6 +32,7 @@ std::vector<BeadColumn> TensorStress<Law>::columns() const {
   const double unit = Law::is_stress ? 1 : law_.fluid.typical_modulus(); // [Pa]
   const std::string what = Law::is_stress ? "polymer stress of that link, "
                                           : "conformation of the polymer in that link, ";
+  const double at_rest = Law::is_stress ? 0 : 1;
   const auto column = [&](const char* component, const char* direction, double born) {
     return BeadColumn{.name = column_name(component),
                       .unit = Law::is_stress ? "Pa" : "1",
@@ -40,6 +41,7 @@ std::vector<BeadColumn> TensorStress<Law>::columns() const {
                       .weight = "volume",
                       .error_scale = 0.1 * law_.fluid.typical_modulus() / unit,
                       .at_birth = born,
+                      .unless_given = at_rest,
                       .stress_of_one = unit};
   };
   return {column("zz", "along it", at_birth.zz), column("rr", "across it", at_birth.rr)};
@@ -86,7 +88,7 @@ void TensorStress<Law>::set_column_rates(const Stage& stage, JetColumns<double> 
               }
             });
   if (stage.feed == nullptr || links.beads.begin > 1 || links.beads.end <= 1) return;
-  // New fluid is stretched at once and mixed in by volume (model 2.1).
+  // New fluid is stretched at once and mixed in by volume (model 2.3).
   const double filling = stage.feed->flow_rate / stage.volume[1];
   const AxialPair entry = law_.of_stretch(1, entry_stretch(stage));
   zz_rate[1] += filling * (entry.zz - zz[1]), rr_rate[1] += filling * (entry.rr - rr[1]);
@@ -141,7 +143,7 @@ void TensorStress<Law>::add_derivatives(const Stage& stage, LinkDerivatives& out
 template <class Law>
 TermAccount TensorStress<Law>::account() const {
   return {.energy = "elastic_energy",
-          .energy_meaning = "of the springs of the polymer, sum V W (model 2.1)",
+          .energy_meaning = "of the springs of the polymer, sum V W (model 2.3)",
           .channel = {.name = "dissipation",
                       .energy = "dissipated_energy",
                       .energy_meaning = "lost so far to relaxation and viscosity",

@@ -56,7 +56,7 @@ void ChainBeads::copy_to(const BeadColumn& column, std::span<double> out) const 
     values = &other->second.values;
   }
   EHDJET_EXPECTS(values == nullptr || values->size() == out.size());
-  std::ranges::fill(out, column.at_birth);
+  std::ranges::fill(out, column.unless_given);
   if (values != nullptr) std::ranges::copy(*values, out.begin());
 }
 

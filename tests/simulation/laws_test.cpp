@@ -181,7 +181,7 @@ TEST(Simulation, is_similar_to_itself_at_any_scale) {
   c.collector->distance *= s;
   *c.field->potential *= s * s;
   c.gravity->acceleration *= s;
-  c.viscoelasticity->elastic_modulus *= s * s, c.viscoelasticity->viscosity *= s * s;
+  *c.viscoelasticity->elastic_modulus *= s * s, *c.viscoelasticity->viscosity *= s * s;
   c.surface_tension->coefficient *= s * s * s;
   c.integrator.velocity_scale *= s;
   const auto large_run = run(scene, 1e-3), small_run = run(small, 1e-3);
@@ -339,7 +339,7 @@ TEST(Failure, a_state_that_is_not_a_number_is_named_with_its_bead) {
 TEST(Failure, fixed_steps_that_overflow_end_the_run) {
   for (const std::string method : {"euler", "heun", "rk4"}) {
     GoldenChain golden("free");
-    golden.scene.config.viscoelasticity->elastic_modulus *= 1e6;
+    *golden.scene.config.viscoelasticity->elastic_modulus *= 1e6;
     integrate(golden.scene, method, 1e-5);
     auto simulation = build_simulation(golden.scene);
     const std::string message = failure(*simulation, 0.1);

@@ -2,17 +2,18 @@
 
 #include "ehdjet/forces/force_term.hpp"
 
+#include <optional>
 #include <vector>
 
 namespace ehdjet {
 
 /// The spring of a Kelvin-Voigt body: a stress that follows from the length of a link alone.
 ///
-///     sigma_k = G ln(l_k/l_ref,k),   T_k = (V_k/l_k) sigma_k                            (model 2.2)
+///     sigma_k = G ln(l_k/l_ref,k),   T_k = (V_k/l_k) sigma_k                            (model 2.4)
 ///
 /// l_ref is the length of the link without stress. It is an amount like the volume: parts of a link
 /// share it out. A new link has that of its fluid at the section of the nozzle, so that
-/// sigma = G ln(A0/A) there; in a link that is fed l_ref = V_1/A0 grows with the volume (model 2.2).
+/// sigma = G ln(A0/A) there; in a link that is fed l_ref = V_1/A0 grows with the volume (model 2.4).
 ///
 /// units  : G [Pa], l_ref [m]
 /// laws   : internal forces sum to zero; conservative, U = sum V sigma^2/(2 G)
@@ -36,10 +37,12 @@ public:
   void add_tension(const Stage& stage, std::span<double> tension) override;
 
 private:
+  [[nodiscard]] double reference(const Stage& stage, std::size_t k) const; // [m]
   [[nodiscard]] double stress(const Stage& stage, std::size_t k) const;
 
   Options options_;
-  std::size_t reference_ = 0;              // its column
+  std::size_t reference_ = 0; // its column
+  std::optional<BeadTable::DryingColumn> drying_;
   std::vector<double> tension_per_length_; // [N/m]
 };
 

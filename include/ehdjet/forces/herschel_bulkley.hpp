@@ -10,7 +10,7 @@ namespace ehdjet {
 
 /// A stress that depends on the strain rate alone, odd in it:
 ///
-///     sigma(e) = sgn(e) (tau_Y (1 - exp(-m |e|)) + K |e|^n)             (model 2.3)
+///     sigma(e) = sgn(e) (tau_Y (1 - exp(-m |e|)) + K |e|^n)             (model 2.5)
 ///
 /// Bingham: n = 1. Power law: tau_Y = 0.
 /// source : Herschel & Bulkley, Kolloid-Z. 39 (1926) 291; regularized as in Papanastasiou, J. Rheol. 31
@@ -39,7 +39,7 @@ struct HerschelBulkleyCurve {
 /// A Herschel-Bulkley fluid that takes the time mu/G to follow its curve, so that it is a Maxwell
 /// fluid where the curve is sigma(e) = mu e:
 ///
-///     d sigma/dt = (G/mu) (sigma(e) - sigma)                            (model 2.3)
+///     d sigma/dt = (G/mu) (sigma(e) - sigma)                            (model 2.5)
 ///
 /// In the energy balance G is the modulus of what is stored.
 template <class Fluid = UniformFluid>

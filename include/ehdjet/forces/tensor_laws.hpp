@@ -22,7 +22,7 @@ struct PairSlopes {
 };
 
 /// Laws of the stress tensor tau of a thread that is strained at the rate e, with a modulus G and a
-/// relaxation time lambda (model 2.1). A law has a state s, two numbers per link:
+/// relaxation time lambda (model 2.3). A law has a state s, two numbers per link:
 ///
 ///     rate                of s [1/s]
 ///     stress_difference   N1 = tau_zz - tau_rr, which pulls [Pa]
@@ -37,7 +37,7 @@ struct PairSlopes {
 /// Upper-convected Maxwell fluid, s = tau:
 ///
 ///     d tau_zz/dt = 2 e tau_zz + 2 G e - tau_zz/lambda
-///     d tau_rr/dt = - e tau_rr - G e - tau_rr/lambda                    (model 2.1)
+///     d tau_rr/dt = - e tau_rr - G e - tau_rr/lambda                    (model 2.3)
 ///
 /// source : Bird, Armstrong & Hassager, Dynamics of Polymeric Liquids 1, 2nd ed. (1987), ch. 7
 template <class Fluid = UniformFluid>
@@ -80,7 +80,7 @@ struct UpperConvected {
 };
 
 /// Giesekus fluid: relaxation is faster where stress is high, by - (alpha_G/(G lambda)) tau^2 in the
-/// rates of an upper-convected Maxwell fluid.                          (model 2.1)
+/// rates of an upper-convected Maxwell fluid.                          (model 2.3)
 ///
 /// source : Giesekus, J. Non-Newtonian Fluid Mech. 11 (1982) 69
 template <class Fluid = UniformFluid>
@@ -129,7 +129,7 @@ private:
 /// FENE-P fluid, springs of finite length, s = A, the conformation:
 ///
 ///     dA_zz/dt = 2 e A_zz - (f A_zz - 1)/lambda,   dA_rr/dt = - e A_rr - (f A_rr - 1)/lambda
-///     f = (L2 - 3)/(L2 - A_zz - 2 A_rr),   tau = G (f A - 1)            (model 2.1)
+///     f = (L2 - 3)/(L2 - A_zz - 2 A_rr),   tau = G (f A - 1)            (model 2.3)
 ///
 /// Where A has left the range of the springs, f is no number, and a step that ends there is repeated.
 /// The energy is - G (L2 - 3)/2 ln((L2 - tr A)/(L2 - 3)).

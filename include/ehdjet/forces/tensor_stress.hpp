@@ -11,14 +11,14 @@ namespace ehdjet {
 
 /// A fluid whose stress is a tensor with an axial and a radial component in each link, one mode of it:
 ///
-///     F_k = T_(k+1) t_(k+1) - T_k t_k,   T_k = (V_k/l_k) (tau_zz - tau_rr)             (model 2.1)
+///     F_k = T_(k+1) t_(k+1) - T_k t_k,   T_k = (V_k/l_k) (tau_zz - tau_rr)             (model 2.3)
 ///
 /// The laws are in forces/tensor_laws.hpp. Modes add up: each is a term of its own.
 ///
 /// units  : tau [Pa], A [1]
 /// laws   : internal forces sum to zero; the rates vanish under rigid motion of a fluid at rest
 /// A landed bead keeps the state of its link, and counts as at rest for the link below it (model 5). New
-/// fluid in a link that is fed is stretched at once and mixed in by volume (model 2.1, 4.3).
+/// fluid in a link that is fed is stretched at once and mixed in by volume (model 2.3, 4.3).
 template <class Law>
 class TensorStress final : public ForceTerm {
 public:

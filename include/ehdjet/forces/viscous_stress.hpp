@@ -6,8 +6,8 @@
 
 namespace ehdjet {
 
-/// A viscous stress along the links: the solvent of a polymer solution, eta = 3 mu_s (model 2.1), or the
-/// dashpot of a Kelvin-Voigt body, eta = mu (model 2.2).
+/// A viscous stress along the links: the solvent of a polymer solution, eta = 3 mu_s (model 2.3), or the
+/// dashpot of a Kelvin-Voigt body, eta = mu (model 2.4).
 ///
 ///     F_k = T_(k+1) t_(k+1) - T_k t_k,   T_k = (V_k/l_k) eta e_k,   e_k = (v_k - v_(k-1)).t_k/l_k
 ///

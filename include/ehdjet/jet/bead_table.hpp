@@ -49,7 +49,8 @@ struct BeadColumn {
   std::string weight = {};
   /// Integrated: the error is measured against rtol (error_scale + |y|) (model 6), in `unit`.
   double error_scale = 1;
-  double at_birth = 0;               ///< of a new bead at the nozzle
+  double at_birth = 0;     ///< of a new bead at the nozzle
+  double unless_given = 0; ///< of the beads of a chain whose file does not have it
   std::optional<Drying> drying = {}; ///< integrated, of links: what evaporates
   /// Integrated: the stress that one `unit` stands for; 0: the column is no stress [Pa].
   double stress_of_one = 0;

@@ -39,7 +39,7 @@ struct JetTotals {
   double mass = 0, charge = 0, volume = 0; ///< all beads but bead 0 [kg], [C], [m^3]
   Vec3 momentum = Vec3::Zero();            ///< of beads that move freely [kg m/s]
   double kinetic_energy = 0;               ///< of the same [J]
-  double elastic_energy = 0;               ///< sum of V sigma^2/(2 G) [J]
+  double elastic_energy = 0;               ///< stored by the fluid (model 2) [J]
   double coulomb_energy = 0;               ///< 0 if nobody asked for it [J]
 };
 

@@ -39,7 +39,7 @@ enum class CollectorCharge { grounded, kept };
 enum class NearFieldForm { point, free_surface, fixed };
 /// How links that have become too long are refined (model 7).
 enum class RefinedMesh { redistribute, cut };
-/// Laws of the stress in the fluid (model 2, 2.1 to 2.3).
+/// Laws of the stress in the fluid (model 2, 2.3 to 2.5).
 enum class Rheology {
   maxwell,
   upper_convected_maxwell,
@@ -116,7 +116,7 @@ struct CoulombConfig {
   bool operator==(const CoulombConfig&) const = default;
 };
 
-/// A spring of a polymer and how fast its stress relaxes (model 2.1).
+/// A spring of a polymer and how fast its stress relaxes (model 2.3).
 struct RelaxationMode {
   double modulus = 0;         ///< G [Pa]
   double relaxation_time = 0; ///< lambda [s]
@@ -140,7 +140,7 @@ struct ViscoelasticityConfig {
   std::optional<double> regularization = {}; ///< m [s]
   bool operator==(const ViscoelasticityConfig&) const = default;
 
-  /// Whether the stress is a tensor (model 2.1).
+  /// Whether the stress is a tensor (model 2.3).
   [[nodiscard]] bool is_tensorial() const;
   /// Those with a stress; without `modes` G and mu/G are the only one.
   [[nodiscard]] std::vector<RelaxationMode> relaxation_modes() const;
@@ -290,7 +290,7 @@ struct ChainBeads {
   std::map<std::string, Other> others; ///< by their names in CSV, as stress_pa
 
   [[nodiscard]] std::size_t size() const { return x.size(); }
-  /// Fills a column of a jet, with its value at birth if the file does not have it.
+  /// Fills a column of a jet, with `unless_given` if the file does not have it.
   /// errors : InputError if what the file has is not numbers
   void copy_to(const BeadColumn& column, std::span<double> out) const;
 };
