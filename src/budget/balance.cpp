@@ -121,8 +121,11 @@ std::span<const Flow> Balance::flows(const JetState& jet) {
   const std::size_t n = stage.beads();
   support_of_.resize(n);
   for (std::size_t k = 0; k < n; ++k) support_of_[k] = chain_.support(k);
-  Exchange exchange{
-      .support_of = support_of_, .led_velocity = {}, .own = {}, .supported = {}};
+  Exchange exchange{.support_of = support_of_,
+                    .led_velocity = {},
+                    .plate_velocity = chain_.constraints().plate_velocity,
+                    .own = {},
+                    .supported = {}};
   for (Vec3& v : exchange.led_velocity) v.setZero();
   const Inflow* inflow = chain_.constraints().inflow;
   if (inflow != nullptr) {

@@ -45,6 +45,7 @@ void ActingChain::bind(const JetState& jet, std::optional<double> absorbing_plan
   stage_.mass = mass_, stage_.charge = charge_, stage_.volume = volume_;
   stage_.feed = feed_ ? &*feed_ : nullptr;
   stage_.declared = declared_;
+  stage_.plate_velocity = constraints_.plate_velocity;
   stage_.first = jet.first(), stage_.landed = landed_, stage_.moves = moves_;
 }
 
@@ -99,8 +100,9 @@ void ActingChain::dry(JetColumns<const double> y) {
 
 // A bead that has passed the plane since the step began acts from where it crossed:
 //
-//     r - v (x - h)/v_x                                                         (model 5)
+//     r - (v - U) (x - h)/v_x                                                   (model 5)
 //
+// where the plate, which moves at U, has taken it since then.
 // To fly on with the velocity of the crossing is right to second order in the time since then,
 // which is less than a step. All beads at the end of the chain but the last one of those that have
 // passed have left the chain and act on no other bead. On a grounded collector that one does not act
@@ -137,7 +139,7 @@ void ActingChain::absorb(std::span<const double> y) {
     if (i + 1 < flying_on_ || constraints_.grounded_collector) charge_[k] = 0;
     if (rests(k)) continue;
     const double late = v.x[k] > 0 ? (r.x[k] - *absorbing_plane_) / v.x[k] : 0.0;
-    place.set(k, r[k] - late * v[k]);
+    place.set(k, r[k] - late * (v[k] - constraints_.plate_velocity));
   }
   stage_.columns = {state_, mass_.size()};
 }

@@ -30,6 +30,12 @@ void JetDynamics::ground_collector() {
   chain_.constrain(c);
 }
 
+void JetDynamics::move_collector(const Vec3& velocity) {
+  Constraints c = constraints();
+  c.plate_velocity = velocity;
+  chain_.constrain(c);
+}
+
 void JetDynamics::lead(const LedParts& led) {
   Constraints c = constraints();
   c.led = led;
@@ -51,6 +57,9 @@ void JetDynamics::bind(const JetState& jet) {
     for (const std::size_t k : of_links ? chain_.frozen() : chain_.held())
       resting_.push_back(c * jet.beads() + k);
   }
+  carried_.clear();
+  if (constraints().plate_velocity != Vec3::Zero())
+    for (const LandedBead& b : jet.landed) carried_.push_back(b.bead);
 }
 
 void JetDynamics::bind_columns(std::shared_ptr<const BeadTable> table) {
@@ -122,6 +131,8 @@ void JetDynamics::evaluate(double t, std::span<const double> y, std::span<double
       && absorbed.back() > stage.first)
     for (const std::size_t k : absorbed) force.set(k, force[absorbed.back() - 1]);
   for (const std::size_t i : resting_) rate[i] = 0;
+  for (const std::size_t k : carried_)
+    rates.position().set(k, constraints().plate_velocity);
 }
 
 void JetDynamics::let_fly_on(Vec3View force) {

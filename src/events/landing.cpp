@@ -54,7 +54,7 @@ double Landing::touching_distance(const JetState& jet, std::size_t bead) {
 
 bool Landing::has_arrived(const JetState& jet, std::size_t bead) const {
   const ConstVec3View r = jet.columns().position();
-  if (r.x[bead] >= distance_) return true;
+  if (r.x[bead] >= plate_.distance) return true;
   const double touching = touching_distance(jet, bead);
   return touching > 0 && (r[bead + 1] - r[bead]).norm() <= touching;
 }
@@ -64,10 +64,10 @@ std::optional<double> Landing::locate(const DenseStep& step) {
   located_.reset(), passing_.clear();
   std::vector<std::pair<double, std::size_t>> found; // theta, bead
   for_each_arrival(
-      step.jet, [&](std::size_t k) { return x1[k] >= distance_; },
+      step.jet, [&](std::size_t k) { return x1[k] >= plate_.distance; },
       [&](std::size_t k) {
         const auto theta = first_crossing([&](double s) {
-                             return step.x(s, k) - distance_;
+                             return step.x(s, k) - plate_.distance;
                            }).value_or(1.0);
         found.emplace_back(theta, k);
       });
@@ -101,7 +101,8 @@ std::optional<double> Landing::first_touch(const DenseStep& step) const {
   if (touching == 0) return std::nullopt;
   const Vec3 resting = step.jet.columns().position()[k + 1];
   const auto excess = [&](double theta) {
-    return touching - (step.position(theta, k) - resting).norm();
+    const Vec3 taken_along = theta * step.h * plate_.velocity;
+    return touching - (step.position(theta, k) - (resting + taken_along)).norm();
   };
   if (excess(0) >= 0) return std::nullopt; // then it is due without being located
   return first_crossing(excess);
@@ -118,7 +119,7 @@ std::optional<double> Landing::predict(const DenseStep& step) const {
   std::size_t k = step.jet.links();
   while (k >= step.jet.first() && step.jet.is_landed(k)) --k;
   if (k < step.jet.first()) return std::nullopt;
-  return expected_crossing(step.x(0, k) - distance_, step.x(1, k) - distance_,
+  return expected_crossing(step.x(0, k) - plate_.distance, step.x(1, k) - plate_.distance,
                            step.h * step.velocity(1, k).x());
 }
 
@@ -126,7 +127,7 @@ void Landing::anticipate(double t, JetState& jet) const {
   const std::size_t end = jet.links();
   for (const Arrival& a : passing_) {
     if (a.time > t) break;
-    put_on_collector(jet, end - a.from_end, a);
+    put_on_collector(jet, end - a.from_end, a, t);
     while (leading_may_go(jet)) remove_leading_bead(jet);
   }
 }
@@ -145,7 +146,7 @@ void Landing::apply(EventContext& context) {
   located_.reset(), passing_.clear();
   for (const Arrival& a : arrived) {
     const std::size_t bead = end - a.from_end;
-    put_on_collector(context.jet, bead, a);
+    put_on_collector(context.jet, bead, a, context.jet.time);
     context.ledger.impact_speed = Vec3(a.state[3], a.state[4], a.state[5]).norm();
     context.ledger.collector_radius =
         std::ranges::find(context.jet.landed, bead, &LandedBead::bead)->radius;
@@ -175,7 +176,7 @@ std::vector<Landing::Arrival> Landing::arrivals(const JetState& jet) const {
 
 Landing::Arrival Landing::arrival_inside(const DenseStep& step, std::size_t bead,
                                          double theta) const {
-  std::vector<double> state{distance_};
+  std::vector<double> state{plate_.distance};
   for (std::size_t c = 1; c < step.jet.table->integrated().size(); ++c)
     state.push_back(step.value(theta, c, bead));
   const Vec3 position(state[0], state[1], state[2]);
@@ -190,16 +191,20 @@ Landing::Arrival Landing::arrival_inside(const DenseStep& step, std::size_t bead
 
 Landing::Arrival Landing::arrival_now(const JetState& jet, std::size_t from_end) const {
   const std::size_t bead = jet.links() - from_end;
-  std::vector<double> state{distance_};
+  std::vector<double> state{plate_.distance};
   for (std::size_t c = 1; c < jet.table->integrated().size(); ++c)
     state.push_back(jet.columns().column(c)[bead]);
   return {
       .from_end = from_end, .time = jet.time, .state = std::move(state), .link_length = {}};
 }
 
-void Landing::put_on_collector(JetState& jet, std::size_t bead, const Arrival& arrival) {
+// The jet is at time t, until which the plate has taken the bead along.
+void Landing::put_on_collector(JetState& jet, std::size_t bead, const Arrival& arrival,
+                               double t) const {
   for (std::size_t c = 0; c < arrival.state.size(); ++c)
     jet.columns().column(c)[bead] = arrival.state[c];
+  if (plate_.moves())
+    jet.columns().position().add(bead, (t - arrival.time) * plate_.velocity);
   const std::size_t link = bead > 0 ? bead : jet.first(); // 0 owns none
   const double length = arrival.link_length.value_or(link_length(jet, link));
   const LandedBead landed{.bead = bead,
@@ -209,18 +214,20 @@ void Landing::put_on_collector(JetState& jet, std::size_t bead, const Arrival& a
                     landed);
 }
 
-void Landing::remove_leading(EventContext& context, double time) {
+void Landing::remove_leading(EventContext& context, double time) const {
   JetState& jet = context.jet;
   const std::size_t leading = jet.links();
   const LandedBead& landed = jet.landed.back();
   const double length = link_length(jet, leading); // none where beads land on each other
-  const DepositedBead deposited{
+  DepositedBead deposited{
       .time = landed.time,
       .removal_time = time,
       .bead = bead_at(jet, leading),
       .landing_radius = landed.radius,
       .radius =
           length > 0 ? link_radius(link_volume(jet, leading), length) : landed.radius};
+  if (plate_.moves())
+    deposited.bead.position = plate_.fixed(deposited.bead.position, jet.time);
   Ledger& ledger = context.ledger;
   ++ledger.removed_beads;
   ledger.removed_mass += deposited.bead.mass;
@@ -239,7 +246,7 @@ void Landing::keep_pace(EventContext& context, std::size_t landings) {
   const double each = steps / static_cast<double>(landings);
   for (std::size_t i = 0; i < landings; ++i)
     steps_per_landing_ += (each - steps_per_landing_) / memory;
-  if (steps_per_landing_ < frequent) context.jet.absorbing_plane = distance_;
+  if (steps_per_landing_ < frequent) context.jet.absorbing_plane = plate_.distance;
   if (steps_per_landing_ > rare) context.jet.absorbing_plane.reset();
 }
 

@@ -64,12 +64,14 @@ void AxialStress<Law>::set_column_rates(const Stage& stage, JetColumns<double> r
   if (stage.feed != nullptr && links.beads.begin <= 1 && links.beads.end > 1)
     out[1] = fed_rate(stage);
 
-  // A landed bead keeps the velocity of its impact as a record, but it is at rest.
+  // A landed bead keeps the velocity of its impact as a record, but it rests on the plate.
   for (const LandedBead& b : stage.landed) {
     const std::size_t k = b.bead + 1;
     if (k < links.beads.begin || k >= links.beads.end) continue;
     if constexpr (Law::is_linear) {
-      const double impact = vx[b.bead] * dx[k] + vy[b.bead] * dy[k] + vz[b.bead] * dz[k];
+      const Vec3& u = stage.plate_velocity;
+      const double impact = (vx[b.bead] - u.x()) * dx[k] + (vy[b.bead] - u.y()) * dy[k]
+                            + (vz[b.bead] - u.z()) * dz[k];
       out[k] += law_.modulus(k) * impact / (l[k] * l[k]);
     } else {
       out[k] = law_.rate(k, strain_rate(stage, k), 1, sigma[k]);
@@ -164,7 +166,7 @@ void AxialStress<Law>::add_power(const Stage& stage, Exchange& exchange) {
     const bool up_moves = exchange.support(up) == Support::none;
     if (exchange.support(k) == Support::collector) {
       exchange.by_support_of(k).energy +=
-          pull.dot(up_moves ? Vec3(v[up]) : exchange.led(up));
+          pull.dot((up_moves ? v[up] : exchange.led(up)) - exchange.led(k));
       continue;
     }
     const double e = Law::is_linear ? 0.0 : strain_rate(stage, k);

@@ -21,8 +21,8 @@ struct LinkMotion {
   double strain_rate = 0; ///< e [1/s]
 };
 
-/// e = w.d/l^2 (model 2). A landed bead keeps the velocity of its impact as a record, but it is at
-/// rest. The upper end of a fed link moves at Q/A_1 relative to the nozzle, which stays in its plane:
+/// e = w.d/l^2 (model 2). A landed bead keeps the velocity of its impact as a record, but it
+/// moves with the plate. The upper end of a fed link moves at Q/A_1 relative to the nozzle, which stays in its plane:
 /// e = w.d/l^2 - Q/V_1 (model 4.3).
 inline LinkMotion motion_of(const Stage& stage, std::size_t k) {
   const Links& links = stage.links();
@@ -30,7 +30,7 @@ inline LinkMotion motion_of(const Stage& stage, std::size_t k) {
   const auto velocity = [&](std::size_t bead) -> Vec3 {
     if (!stage.landed.empty()
         && std::ranges::binary_search(stage.landed, bead, {}, &LandedBead::bead))
-      return Vec3::Zero();
+      return stage.plate_velocity;
     return v[bead];
   };
   const std::size_t up = links.upstream(k);

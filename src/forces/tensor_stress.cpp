@@ -174,7 +174,7 @@ void TensorStress<Law>::add_power(const Stage& stage, Exchange& exchange) {
     const bool up_moves = exchange.support(up) == Support::none;
     if (exchange.support(k) == Support::collector) {
       exchange.by_support_of(k).energy +=
-          pull.dot(up_moves ? Vec3(v[up]) : exchange.led(up));
+          pull.dot((up_moves ? v[up] : exchange.led(up)) - exchange.led(k));
       continue;
     }
     exchange.own.energy -= volume * law_.dissipation(k, s);

@@ -3,6 +3,8 @@
 #include "ehdjet/core/error.hpp"
 #include "ehdjet/core/parallel.hpp"
 
+#include <utility>
+
 #include "link_strain.hpp"
 #include "link_tension.hpp"
 
@@ -60,9 +62,13 @@ void ViscousStress::add_power(const Stage& stage, Exchange& exchange) {
     const std::size_t up = links.upstream(k);
     const double e = strain_rate(stage, k), stress = viscosity_ * e, l = links.length[k];
     exchange.own.energy -= stage.volume[k] * stress * e;
+    const Vec3 pull = stage.volume[k] * stress / (l * l) * links.vector(k); // T t
+    // A plate that moves does work on the beads that rest on it.
+    for (const auto& [end, sign] : {std::pair{up, -1.0}, {k, 1.0}})
+      if (exchange.support(end) == Support::collector)
+        exchange.by_support_of(end).energy += sign * pull.dot(exchange.led(end));
     const Support support = exchange.support(up);
     if (support == Support::none || support == Support::collector) continue;
-    const Vec3 pull = stage.volume[k] * stress / (l * l) * links.vector(k); // T t
     if (is_fed(stage, k))
       exchange.by_support_of(up).energy -= stage.feed->flow_rate * stress;
     else

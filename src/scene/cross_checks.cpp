@@ -131,6 +131,18 @@ void check_field(const SceneConfig& c, const SceneText& text) {
                     *potential));
 }
 
+void check_collector(const SceneConfig& c, const SceneText& text) {
+  if (!c.collector || !c.collector->velocity) return;
+  const auto& u = *c.collector->velocity;
+  if (u[0] != 0)
+    text.fail(
+        "collector.velocity",
+        fmt::format(
+            "collector.velocity = [{}, {}, {}] m/s: the first component must be 0 m/s, "
+            "the collector moves in its plane",
+            u[0], u[1], u[2]));
+}
+
 void settle_step(IntegratorConfig& i, const SceneText& text) {
   const IntegratorDescription& method = integration_method(i.method);
   const bool has_error_estimate = method.estimates_errors;
@@ -542,6 +554,7 @@ void settle(SceneConfig& config, const SceneText& text) {
   check_stress_keys(config, text);
   check_jet(config, text);
   check_field(config, text);
+  check_collector(config, text);
   settle_step(config.integrator, text);
   check_adaptive_keys(config.integrator, text);
   check_two_rates(config, text);

@@ -42,6 +42,12 @@ Nozzle nozzle_of(const NozzleConfig& c) {
           .phase = c.phase};
 }
 
+Plate plate_of(const CollectorConfig& c) {
+  Plate plate{.distance = c.distance};
+  if (c.velocity) plate.velocity = Vec3(c.velocity->data());
+  return plate;
+}
+
 std::optional<Varicosity> varicosity_of(const SceneConfig& c) {
   if (!c.varicosity) return std::nullopt;
   const VaricosityConfig& v = *c.varicosity;
@@ -318,6 +324,7 @@ std::unique_ptr<JetDynamics> compose_dynamics(const Scene& scene,
          .last = c.chain->fixed == FixedEnds::last || c.chain->fixed == FixedEnds::both});
   if (c.collector && c.collector->charge == CollectorCharge::grounded)
     dynamics->ground_collector();
+  if (c.collector) dynamics->move_collector(plate_of(*c.collector).velocity);
   if (c.field) dynamics->add(std::make_unique<ExternalField>(field_strength(c)));
   if (c.gravity) dynamics->add(std::make_unique<Gravity>(c.gravity->acceleration));
   if (c.coulomb)
@@ -369,6 +376,7 @@ std::unique_ptr<TwoRate> build_two_rate(const Scene& scene, const JetDynamics& w
     auto dynamics = std::make_unique<JetDynamics>();
     dynamics->set_inflow(inflow);
     if (whole.constraints().grounded_collector) dynamics->ground_collector();
+    dynamics->move_collector(whole.constraints().plate_velocity);
     return dynamics;
   };
   TwoRate::Parts parts;
@@ -450,7 +458,7 @@ std::unique_ptr<Simulation> build_simulation(const Scene& scene, Extras extras) 
                         && c.integrator.landings == LandingSteps::automatic;
   if (c.collector)
     simulation->add(
-        std::make_unique<Landing>(c.collector->distance, first_is_free ? 0 : 1, may_pass));
+        std::make_unique<Landing>(plate_of(*c.collector), first_is_free ? 0 : 1, may_pass));
   if (inflow)
     for (auto& event : inflow->events()) simulation->add(std::move(event));
   if (c.refinement) simulation->add(build_refinement(c, simulation->dynamics()));

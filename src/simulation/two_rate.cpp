@@ -247,10 +247,12 @@ void TwoRate::set_rate(const JetState& jet) {
   rest_landed(jet, rate_);
 }
 
-void TwoRate::rest_landed(const JetState& jet, std::vector<double>& rate) {
-  for (const LandedBead& b : jet.landed)
-    for (std::size_t c = 0; c < jet.columns().count(); ++c)
-      rate[c * jet.beads() + b.bead] = 0;
+void TwoRate::rest_landed(const JetState& jet, std::vector<double>& rate) const {
+  const JetColumns<double> rates{rate, jet.beads()};
+  for (const LandedBead& b : jet.landed) {
+    for (std::size_t c = 0; c < rates.count(); ++c) rates.column(c)[b.bead] = 0;
+    rates.position().set(b.bead, parts_.downstream->constraints().plate_velocity);
+  }
 }
 
 void TwoRate::prepare_inner(const JetState& jet, const Ledger& ledger) {
@@ -401,7 +403,7 @@ void TwoRate::commit(JetState& jet, Ledger& ledger, RunStatistics& statistics) {
   for (std::size_t c = 0; c < next.columns().count(); ++c)
     for (std::size_t k = m + births; k < beads; ++k)
       jerk_[c * beads + k] = (rate_[c * beads + k] - previous_[c * n + k - births]) / h_;
-  rest_landed(next, jerk_);
+  rest_landed(next, jerk_); // its rows of places play no part
   forget_distant(next, births);
   jet = std::move(next);
   ready_ = !adapt(worst, births), inner_ready_ = false;

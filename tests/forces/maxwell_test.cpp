@@ -202,6 +202,16 @@ TEST(Maxwell, a_landed_bead_is_at_rest_for_the_link_below_it) {
   for (const std::size_t k : {1U, 2U, 3U, 4U}) EXPECT_EQ(landed[k], moving[k]) << k;
 }
 
+TEST(Maxwell, a_landed_bead_moves_with_the_plate_for_the_link_below_it) {
+  Chain chain = strained_chain(1);
+  Maxwell maxwell(G, mu);
+  const std::vector<double> moving = chain.stress_rates(maxwell);
+  chain.stage().plate_velocity = chain.columns().velocity()[3];
+  chain.landed = {{.bead = 3, .time = 0, .radius = 0}};
+  const std::vector<double> landed = chain.stress_rates(maxwell);
+  for (const std::size_t k : {1U, 2U, 3U, 4U, 5U}) EXPECT_EQ(landed[k], moving[k]) << k;
+}
+
 TEST(Maxwell, a_fluid_without_elasticity_or_viscosity_is_a_contract_violation) {
   EXPECT_THROW(Maxwell(0, mu), ContractViolation);
   EXPECT_THROW(Maxwell(G, 0), ContractViolation);

@@ -150,6 +150,7 @@ TEST(ResolvedToml, keeps_every_bit_and_every_character) {
   c.integrator.events = EventPlacement::step_end;
   c.run.threads = 3;
   c.output.deposit = true;
+  c.collector->velocity = {0, 2. / 3, -1e-3};
   EXPECT_EQ(read(resolved_toml(c)).config, c);
 }
 

@@ -43,6 +43,8 @@ struct Constraints {
   HeldEnds ends = {};
   /// Landed beads rest in the place of their image charges and act on no other bead (model 5).
   bool grounded_collector = false;
+  /// Of the collector, and so of landed beads (model 5.1) [m/s].
+  Vec3 plate_velocity = Vec3::Zero();
   LedParts led = {};
 };
 

@@ -22,7 +22,8 @@ namespace ehdjet {
 ///     dr_k/dt = v_k,   m_k dv_k/dt = sum of the terms' forces,   d sigma_k/dt from the rheology
 ///
 /// Beads that do not move freely have rate zero: the nozzle and an embryo, whose places are
-/// prescribed at each stage time, held ends, and landed beads.
+/// prescribed at each stage time, held ends, and landed beads. A landed bead has the velocity of the
+/// collector; its column of velocities keeps that of its impact.
 ///
 /// Its stiff part are the terms' answers to a change of a link or of a velocity, with dr/dt = v
 /// (model 6). Pairs of charges have no part in it.
@@ -37,6 +38,8 @@ public:
   void hold(HeldEnds ends);
   /// Beads that have landed act on no other bead.
   void ground_collector();
+  /// Landed beads move with the collector (model 5.1).
+  void move_collector(const Vec3& velocity);
   /// Only a part of the chain moves freely, and rates are those of this part. If the head is led, the
   /// others feel only their own charges; a part whose tail is led also feels those of the tail.
   void lead(const LedParts& led);
@@ -97,6 +100,7 @@ private:
   std::shared_ptr<const BeadTable> table_; // that the terms are bound to
   std::vector<ForceTerm*> with_columns_;   // terms that add integrated columns
   std::vector<std::size_t> resting_;       // entries of the state whose rate is zero
+  std::vector<std::size_t> carried_;       // beads that a moving collector takes along
   BeadRange targets_, sources_;            // of a part of the chain
   std::vector<double> own_force_;          // on beads that have passed the collector [N]
   std::shared_ptr<const Inflow> inflow_;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "ehdjet/events/event.hpp"
+#include "ehdjet/jet/plate.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -17,17 +18,18 @@ namespace ehdjet {
 /// whose beads all land in one place: once it is shorter than its radius, l^3 <= V/pi, and than a tenth
 /// of its length when the lower bead landed, its upper bead has landed, too.
 ///
+/// The collector may move in its plane and takes landed beads along (model 5.1).
+///
 /// A landing ends the step, unless beads land every few steps. Then they pass the collector during
 /// a step, in which they count as resting where they crossed (JetState::absorbing_plane); time and
 /// state of each bead at its landing are read off the dense output, and the chain changes at the
 /// end of the step. What that does to the motion is part of the error estimate.
 class Landing final : public Event {
 public:
-  /// `collector_distance`: h [m]; `first_bead`: 1 behind a nozzle, 0 for a chain whose bead 0 is
+  /// `first_bead`: 1 behind a nozzle, 0 for a chain whose bead 0 is
   /// like any other; `may_pass`: steps need not end at frequent landings.
-  explicit Landing(double collector_distance, std::size_t first_bead = 1,
-                   bool may_pass = false)
-      : distance_(collector_distance)
+  explicit Landing(const Plate& plate, std::size_t first_bead = 1, bool may_pass = false)
+      : plate_(plate)
       , first_bead_(first_bead)
       , may_pass_(may_pass) {}
   [[nodiscard]] std::string_view name() const override { return "landing"; }
@@ -64,15 +66,16 @@ private:
                                        double theta) const;
   [[nodiscard]] Arrival arrival_now(const JetState& jet, std::size_t from_end) const;
   [[nodiscard]] std::vector<Arrival> arrivals(const JetState& jet) const;
-  static void put_on_collector(JetState& jet, std::size_t bead, const Arrival& arrival);
-  static void remove_leading(EventContext& context, double time);
+  void put_on_collector(JetState& jet, std::size_t bead, const Arrival& arrival,
+                        double t) const;
+  void remove_leading(EventContext& context, double time) const;
   void keep_pace(EventContext& context, std::size_t landings);
 
   template <class Reached, class Found>
   void for_each_arrival(const JetState& jet, const Reached& reached,
                         const Found& found) const;
 
-  double distance_;
+  Plate plate_;
   std::size_t first_bead_;
   bool may_pass_;
   std::optional<std::size_t>

@@ -49,6 +49,7 @@ inline constexpr std::size_t supports = 5;
 struct Exchange {
   std::span<const Support> support_of;  ///< (beads)
   std::array<Vec3, 2> led_velocity;     ///< dr/dt of beads 0 and 1 where they are led [m/s]
+  Vec3 plate_velocity;                  ///< of landed beads [m/s]
   Flow own;                             ///< of the term's own channel
   std::array<Flow, supports> supported; ///< of the supports
 
@@ -65,6 +66,7 @@ struct Exchange {
   /// dr/dt of a bead that does not move freely [m/s].
   [[nodiscard]] Vec3 led(std::size_t bead) const {
     const Support s = support(bead);
+    if (s == Support::collector) return plate_velocity;
     return s == Support::inflow || s == Support::insertion ? led_velocity[bead]
                                                            : Vec3(Vec3::Zero());
   }

@@ -27,9 +27,11 @@ void archive(const Archive& a, Ledger& ledger);
 
 /// A bead that has left the chain: one element of the deposited fibre (model 5).
 struct DepositedBead {
-  double time = 0;           ///< of its landing [s]
-  double removal_time = 0;   ///< when it left the chain [s]
-  Bead bead;                 ///< position on the collector, velocity and stress at landing
+  double time = 0;         ///< of its landing [s]
+  double removal_time = 0; ///< when it left the chain [s]
+  /// Position on the collector, in coordinates that are fixed to it (Plate::fixed), velocity and stress
+  /// at landing.
+  Bead bead;
   double landing_radius = 0; ///< of its link at its landing [m]
   double radius = 0;         ///< of its link when it left the chain [m]
 };

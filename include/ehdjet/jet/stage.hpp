@@ -28,6 +28,7 @@ public:
   std::size_t first = 1;      ///< first bead below bead 0 with local forces
   const Feed* feed = nullptr; ///< what flows into link 1; null: nothing does
   std::span<const LandedBead> landed;
+  Vec3 plate_velocity = Vec3::Zero();  ///< of landed beads [m/s]
   std::span<const std::uint8_t> moves; ///< 1: the bead moves freely
   /// Beads whose forces are asked for, and those whose charges act on them: all, unless only a part
   /// of the right-hand side is evaluated.

@@ -186,6 +186,7 @@ struct SurfaceTensionConfig {
 struct CollectorConfig {
   double distance = 0; ///< h [m]
   CollectorCharge charge = CollectorCharge::grounded;
+  std::optional<std::array<double, 3>> velocity = {}; ///< U, 0 along x [m/s]
   bool operator==(const CollectorConfig&) const = default;
 };
 

@@ -216,6 +216,10 @@ void describe(V& v, CollectorConfig& c) {
   v.optional("charge", c.charge, collector_charges,
              "the charge of a bead that rests on the grounded collector acts on no other "
              "bead, or it is kept until the bead leaves (the paper)");
+  v.optional("velocity", c.velocity, Triple{between("m/s", -1e3, 1e3)},
+             "velocity of the collector in its plane, [0, vy, vz]; the deposit is then in "
+             "coordinates that move with it",
+             "it is at rest");
 }
 
 template <class V>

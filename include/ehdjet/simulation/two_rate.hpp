@@ -103,7 +103,7 @@ private:
   void evaluate_alone(const JetState& jet);
   void bind_downstream(const JetState& jet);
   void set_rate(const JetState& jet);
-  static void rest_landed(const JetState& jet, std::vector<double>& rate);
+  void rest_landed(const JetState& jet, std::vector<double>& rate) const;
   void prepare_inner(const JetState& jet, const Ledger& ledger);
   bool run_inner(double end);
   void take_back_inner(double end);
