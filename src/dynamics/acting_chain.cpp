@@ -45,6 +45,7 @@ void ActingChain::bind(const JetState& jet, std::optional<double> absorbing_plan
   stage_.mass = mass_, stage_.charge = charge_, stage_.volume = volume_;
   stage_.feed = feed_ ? &*feed_ : nullptr;
   stage_.declared = declared_;
+  stage_.field_is_off = jet.field_is_off;
   stage_.plate_velocity = constraints_.plate_velocity;
   stage_.first = jet.first(), stage_.landed = landed_, stage_.moves = moves_;
 }

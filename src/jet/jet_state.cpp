@@ -69,6 +69,10 @@ void archive(const Archive& a, JetState& jet) {
   if (a.is_reading()) jet.fed_since = 0;
   if (a.is_reading() ? has_name(a, "fed_since") : jet.fed_since != 0)
     a("fed_since", jet.fed_since);
+  // Only one whose field is switched.
+  if (a.is_reading()) jet.field_is_off = false;
+  if (a.is_reading() ? has_name(a, "field_is_off") : jet.field_is_off)
+    a("field_is_off", jet.field_is_off);
   std::vector<double> bead, time, radius;
   for (const LandedBead& l : jet.landed) {
     bead.push_back(static_cast<double>(l.bead));
@@ -96,6 +100,7 @@ JetState blank_jet(std::shared_ptr<const BeadTable> table, std::size_t beads) {
 JetState blank_like(const JetState& jet, std::size_t beads) {
   JetState blank = blank_jet(jet.table, beads);
   blank.time = jet.time, blank.has_embryo = jet.has_embryo;
+  blank.field_is_off = jet.field_is_off;
   blank.fed_since = jet.fed_since, blank.absorbing_plane = jet.absorbing_plane;
   return blank;
 }

@@ -112,7 +112,7 @@ void check_jet(const SceneConfig& c, const SceneText& text) {
 
 void check_field(const SceneConfig& c, const SceneText& text) {
   if (!c.field) return;
-  const auto& [potential, strength] = *c.field;
+  const std::optional<double>&potential = c.field->potential, &strength = c.field->strength;
   if (potential && strength)
     text.fail("field.strength",
               fmt::format(
@@ -129,6 +129,25 @@ void check_field(const SceneConfig& c, const SceneText& text) {
         fmt::format("field.potential = {} V needs collector.distance, the field is their "
                     "ratio: add [collector] or give field.strength",
                     *potential));
+}
+
+void check_waveform(const SceneConfig& c, const SceneText& text) {
+  if (!c.field) return;
+  const FieldWaveform waveform = c.field->waveform;
+  const std::string is =
+      fmt::format("field.waveform = \"{}\"", name_of(waveform, field_waveforms));
+  const auto check = [&](const char* key, const std::optional<double>& value,
+                         const char* unit, FieldWaveform its) {
+    if (waveform == its && !value)
+      text.fail("field", fmt::format("field.{} is missing: it is needed with {}", key, is));
+    if (waveform != its && value)
+      text.fail(fmt::format("field.{}", key),
+                fmt::format("field.{} = {} {} has no meaning with {}: it needs waveform = "
+                            "\"{}\". Remove it",
+                            key, *value, unit, is, name_of(its, field_waveforms)));
+  };
+  check("frequency", c.field->frequency, "1/s", FieldWaveform::square);
+  check("time_constant", c.field->time_constant, "s", FieldWaveform::rc);
 }
 
 void check_collector(const SceneConfig& c, const SceneText& text) {
@@ -554,6 +573,7 @@ void settle(SceneConfig& config, const SceneText& text) {
   check_stress_keys(config, text);
   check_jet(config, text);
   check_field(config, text);
+  check_waveform(config, text);
   check_collector(config, text);
   settle_step(config.integrator, text);
   check_adaptive_keys(config.integrator, text);

@@ -102,11 +102,20 @@ std::string rheology_text(const SceneConfig& c) {
                      modes > 1 ? fmt::format(", {} modes", modes) : "");
 }
 
+std::string waveform_text(const FieldConfig& c) {
+  if (c.waveform == FieldWaveform::square)
+    return fmt::format(" (square wave of {:.6g} 1/s)", *c.frequency);
+  if (c.waveform == FieldWaveform::rc)
+    return fmt::format(" (rises within {:.6g} s)", *c.time_constant);
+  return "";
+}
+
 std::string forces_text(const Scene& scene) {
   const SceneConfig& c = scene.config;
   std::vector<std::string> forces;
   if (c.field)
-    forces.push_back(fmt::format("external field {:.6g} V/m", field_strength(c)));
+    forces.push_back(fmt::format("external field {:.6g} V/m{}", field_strength(c),
+                                 waveform_text(*c.field)));
   if (c.gravity)
     forces.push_back(fmt::format("gravity {:.6g} m/s^2", c.gravity->acceleration));
   if (c.coulomb) forces.push_back(fmt::format("Coulomb ({})", coulomb_text(scene)));

@@ -4,6 +4,7 @@
 #include "ehdjet/core/csv_table.hpp"
 #include "ehdjet/core/error.hpp"
 #include "ehdjet/coulomb/make_solver.hpp"
+#include "ehdjet/events/field_switch.hpp"
 #include "ehdjet/events/insertion.hpp"
 #include "ehdjet/events/landing.hpp"
 #include "ehdjet/events/pump.hpp"
@@ -325,7 +326,11 @@ std::unique_ptr<JetDynamics> compose_dynamics(const Scene& scene,
   if (c.collector && c.collector->charge == CollectorCharge::grounded)
     dynamics->ground_collector();
   if (c.collector) dynamics->move_collector(plate_of(*c.collector).velocity);
-  if (c.field) dynamics->add(std::make_unique<ExternalField>(field_strength(c)));
+  if (c.field)
+    dynamics->add(std::make_unique<ExternalField>(
+        ExternalField::Options{.strength = field_strength(c),
+                               .is_switched = c.field->waveform == FieldWaveform::square,
+                               .charging_time = c.field->time_constant}));
   if (c.gravity) dynamics->add(std::make_unique<Gravity>(c.gravity->acceleration));
   if (c.coulomb)
     dynamics->add(std::make_unique<CoulombForce>(
@@ -461,6 +466,8 @@ std::unique_ptr<Simulation> build_simulation(const Scene& scene, Extras extras) 
         std::make_unique<Landing>(plate_of(*c.collector), first_is_free ? 0 : 1, may_pass));
   if (inflow)
     for (auto& event : inflow->events()) simulation->add(std::move(event));
+  if (c.field && c.field->frequency)
+    simulation->add(std::make_unique<FieldSwitch>(*c.field->frequency));
   if (c.refinement) simulation->add(build_refinement(c, simulation->dynamics()));
   for (auto& event : extras.events) simulation->add(std::move(event));
   for (auto& observer : extras.observers) simulation->add(std::move(observer));

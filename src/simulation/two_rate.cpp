@@ -85,6 +85,7 @@ void join(const JetState& inner, std::size_t rows, const JetState& jet,
     std::ranges::copy(above.first(rows), out.carried(c).begin());
     std::ranges::copy(below.subspan(from), out.carried(c).begin() + behind);
   }
+  out.field_is_off = jet.field_is_off;
   out.landed = jet.landed;
   for (LandedBead& b : out.landed) b.bead += rows - from;
 }

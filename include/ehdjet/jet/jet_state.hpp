@@ -38,6 +38,7 @@ struct JetState {
   std::vector<std::vector<double>> declared; ///< further carried columns
   bool has_embryo = false;
   double fed_since = 0;           ///< when link 1 was cut last, if the inflow feeds it [s]
+  bool field_is_off = false;      ///< of a field that is switched (model 2.4)
   std::vector<LandedBead> landed; ///< still in the chain, ascending bead index
   /// While beads land every few steps: the plane beyond which, during a step, a bead counts as
   /// resting where it crossed (model 5). None: each landing ends a step [m].
@@ -75,7 +76,7 @@ void archive(const Archive& a, JetState& jet);
 /// A jet of that many beads whose columns are all zero.
 [[nodiscard]] JetState blank_jet(std::shared_ptr<const BeadTable> table, std::size_t beads);
 
-/// A blank jet with the time, the state of embryo and feed, and the absorbing plane of another jet, without
+/// A blank jet with the time, the state of embryo, feed and field, and the absorbing plane of another jet, without
 /// its landed beads: a start for putting that jet on another mesh.
 [[nodiscard]] JetState blank_like(const JetState& jet, std::size_t beads);
 

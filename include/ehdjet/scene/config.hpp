@@ -31,6 +31,8 @@ enum class SurfaceTensionForm { paper, line };
 enum class EventPlacement { located, step_end };
 /// Whether steps go on through landings while those are frequent (model 5).
 enum class LandingSteps { automatic, located };
+/// How the external field changes in time (model 2.4).
+enum class FieldWaveform { constant, square, rc };
 /// How fluid enters a jet at its nozzle (model 4).
 enum class InflowKind { embryo, pump };
 /// What the charge of a bead does once it rests on the collector (model 5).
@@ -92,6 +94,9 @@ struct ChainConfig {
 struct FieldConfig {
   std::optional<double> potential; ///< Phi0 [V]; needs a collector
   std::optional<double> strength;  ///< E [V/m]
+  FieldWaveform waveform = FieldWaveform::constant;
+  std::optional<double> frequency = {};     ///< f of the square wave [1/s]
+  std::optional<double> time_constant = {}; ///< tau of the RC circuit [s]
   bool operator==(const FieldConfig&) const = default;
 };
 

@@ -80,6 +80,10 @@ inline constexpr Choices<InflowKind, 2> inflow_kinds{
     {{"embryo", InflowKind::embryo}, {"pump", InflowKind::pump}}};
 inline constexpr Choices<CollectorCharge, 2> collector_charges{
     {{"grounded", CollectorCharge::grounded}, {"kept", CollectorCharge::kept}}};
+inline constexpr Choices<FieldWaveform, 3> field_waveforms{
+    {{"constant", FieldWaveform::constant},
+     {"square", FieldWaveform::square},
+     {"rc", FieldWaveform::rc}}};
 inline constexpr Choices<NearFieldForm, 3> near_field_forms{
     {{"point", NearFieldForm::point},
      {"free-surface", NearFieldForm::free_surface},
@@ -229,6 +233,14 @@ void describe(V& v, FieldConfig& c) {
              "`strength` is given");
   v.optional("strength", c.strength, between("V/m", -1e8, 1e8), "field along +x, E",
              "`potential` is given");
+  v.optional(
+      "waveform", c.waveform, field_waveforms,
+      "the field is constant, is switched on and off and on for sin(2 pi frequency t) > "
+      "0, or rises as 1 - exp(-t/time_constant), as if an RC circuit charged the nozzle");
+  v.optional("frequency", c.frequency, positive("1/s", 1e9), "of the square wave, f",
+             "required with waveform = \"square\"");
+  v.optional("time_constant", c.time_constant, positive("s", longest_time),
+             "of the RC circuit, tau", "required with waveform = \"rc\"");
 }
 
 template <class V>
