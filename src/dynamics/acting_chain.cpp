@@ -46,6 +46,7 @@ void ActingChain::bind(const JetState& jet, std::optional<double> absorbing_plan
   stage_.feed = feed_ ? &*feed_ : nullptr;
   stage_.declared = declared_;
   stage_.field_is_off = jet.field_is_off;
+  mat_ = jet.mat, stage_.mat = mat_.get();
   stage_.plate_velocity = constraints_.plate_velocity;
   stage_.first = jet.first(), stage_.landed = landed_, stage_.moves = moves_;
 }
@@ -105,7 +106,7 @@ void ActingChain::dry(JetColumns<const double> y) {
 //
 // where the plate, which moves at U, has taken it since then.
 // To fly on with the velocity of the crossing is right to second order in the time since then,
-// which is less than a step. All beads at the end of the chain but the last one of those that have
+// which is less than a step. On an insulating collector they keep their charges. Otherwise all beads at the end of the chain but the last one of those that have
 // passed have left the chain and act on no other bead. On a grounded collector that one does not act
 // either. Within a long step beads may pass that have others behind them which have not; they wait.
 void ActingChain::absorb(std::span<const double> y) {
@@ -137,7 +138,8 @@ void ActingChain::absorb(std::span<const double> y) {
   for (std::size_t i = 0; i < absorbed_.size(); ++i) {
     const std::size_t k = absorbed_[i];
     charge_before_.push_back(charge_[k]);
-    if (i + 1 < flying_on_ || constraints_.grounded_collector) charge_[k] = 0;
+    const bool has_left = i + 1 < flying_on_ && !constraints_.insulating_collector;
+    if (has_left || constraints_.grounded_collector) charge_[k] = 0;
     if (rests(k)) continue;
     const double late = v.x[k] > 0 ? (r.x[k] - *absorbing_plane_) / v.x[k] : 0.0;
     place.set(k, r[k] - late * (v[k] - constraints_.plate_velocity));

@@ -30,6 +30,12 @@ void JetDynamics::ground_collector() {
   chain_.constrain(c);
 }
 
+void JetDynamics::insulate_collector() {
+  Constraints c = constraints();
+  c.insulating_collector = true;
+  chain_.constrain(c);
+}
+
 void JetDynamics::move_collector(const Vec3& velocity) {
   Constraints c = constraints();
   c.plate_velocity = velocity;

@@ -21,7 +21,8 @@ bool leading_may_go(const JetState& jet) {
 template <class Reached, class Found>
 void Landing::for_each_arrival(const JetState& jet, const Reached& reached,
                                const Found& found) const {
-  for (std::size_t k = jet.has_embryo ? jet.first() : first_bead_; k < jet.beads(); ++k)
+  for (std::size_t k = jet.has_embryo ? jet.first() : options_.first_bead; k < jet.beads();
+       ++k)
     if (reached(k) && !jet.is_landed(k)) found(k);
 }
 
@@ -95,7 +96,7 @@ std::optional<double> Landing::locate(const DenseStep& step) {
 // When the bead above a resting leading bead touches it.
 std::optional<double> Landing::first_touch(const DenseStep& step) const {
   const std::size_t k = step.jet.links() - 1;
-  if (k < std::max(step.jet.first(), first_bead_) || step.jet.is_landed(k))
+  if (k < std::max(step.jet.first(), options_.first_bead) || step.jet.is_landed(k))
     return std::nullopt;
   const double touching = touching_distance(step.jet, k);
   if (touching == 0) return std::nullopt;
@@ -128,7 +129,7 @@ void Landing::anticipate(double t, JetState& jet) const {
   for (const Arrival& a : passing_) {
     if (a.time > t) break;
     put_on_collector(jet, end - a.from_end, a, t);
-    while (leading_may_go(jet)) remove_leading_bead(jet);
+    while (leading_may_go(jet)) leave_chain(jet, a.time);
   }
 }
 
@@ -153,7 +154,7 @@ void Landing::apply(EventContext& context) {
     ++context.statistics.landings;
     while (leading_may_go(context.jet)) remove_leading(context, a.time);
   }
-  if (may_pass_) keep_pace(context, arrived.size());
+  if (options_.may_pass) keep_pace(context, arrived.size());
 }
 
 // Who lands now: the bead that ended the step or, at the end of a step, all that are there, the
@@ -180,7 +181,7 @@ Landing::Arrival Landing::arrival_inside(const DenseStep& step, std::size_t bead
   for (std::size_t c = 1; c < step.jet.table->integrated().size(); ++c)
     state.push_back(step.value(theta, c, bead));
   const Vec3 position(state[0], state[1], state[2]);
-  const double length = bead > first_bead_
+  const double length = bead > options_.first_bead
                             ? (position - step.position(theta, bead - 1)).norm()
                             : link_length(step.jet, bead);
   return {.from_end = step.jet.links() - bead,
@@ -233,8 +234,18 @@ void Landing::remove_leading(EventContext& context, double time) const {
   ledger.removed_mass += deposited.bead.mass;
   ledger.removed_charge += deposited.bead.charge;
   ledger.removed_volume += deposited.bead.volume;
-  remove_leading_bead(jet);
+  leave_chain(jet, time);
   context.deposited.push_back(deposited);
+}
+
+// The leading bead leaves, and its charge may stay on the collector.
+void Landing::leave_chain(JetState& jet, double time) const {
+  if (options_.charges_mat) {
+    const std::size_t leading = jet.links();
+    const Vec3 place = plate_.fixed(jet.columns().position()[leading], jet.time);
+    jet.mat = with_charge(jet.mat, place, jet.charge[leading], time, options_.decay_time);
+  }
+  remove_leading_bead(jet);
 }
 
 // Beads pass once a landing would end every sixth step, and land in steps of their own again when

@@ -73,6 +73,7 @@ void archive(const Archive& a, JetState& jet) {
   if (a.is_reading()) jet.field_is_off = false;
   if (a.is_reading() ? has_name(a, "field_is_off") : jet.field_is_off)
     a("field_is_off", jet.field_is_off);
+  archive(a.part("mat"), jet.mat);
   std::vector<double> bead, time, radius;
   for (const LandedBead& l : jet.landed) {
     bead.push_back(static_cast<double>(l.bead));
@@ -100,7 +101,7 @@ JetState blank_jet(std::shared_ptr<const BeadTable> table, std::size_t beads) {
 JetState blank_like(const JetState& jet, std::size_t beads) {
   JetState blank = blank_jet(jet.table, beads);
   blank.time = jet.time, blank.has_embryo = jet.has_embryo;
-  blank.field_is_off = jet.field_is_off;
+  blank.field_is_off = jet.field_is_off, blank.mat = jet.mat;
   blank.fed_since = jet.fed_since, blank.absorbing_plane = jet.absorbing_plane;
   return blank;
 }

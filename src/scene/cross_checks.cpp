@@ -151,15 +151,25 @@ void check_waveform(const SceneConfig& c, const SceneText& text) {
 }
 
 void check_collector(const SceneConfig& c, const SceneText& text) {
-  if (!c.collector || !c.collector->velocity) return;
-  const auto& u = *c.collector->velocity;
-  if (u[0] != 0)
+  if (!c.collector) return;
+  const auto& u = c.collector->velocity;
+  if (u && (*u)[0] != 0)
     text.fail(
         "collector.velocity",
         fmt::format(
             "collector.velocity = [{}, {}, {}] m/s: the first component must be 0 m/s, "
             "the collector moves in its plane",
-            u[0], u[1], u[2]));
+            (*u)[0], (*u)[1], (*u)[2]));
+  const bool has_mat = c.collector->charge == CollectorCharge::kept_on_mat;
+  if (has_mat && !c.coulomb)
+    text.fail("collector.charge",
+              "collector.charge = \"kept-on-mat\" needs [coulomb]: without it charges do "
+              "not act on each other");
+  if (c.collector->decay_time && !has_mat)
+    text.fail("collector.decay_time",
+              fmt::format("collector.decay_time = {} s needs collector.charge = "
+                          "\"kept-on-mat\": only charges that stay can decay. Remove it",
+                          *c.collector->decay_time));
 }
 
 void settle_step(IntegratorConfig& i, const SceneText& text) {

@@ -191,6 +191,13 @@ std::string refinement_text(const SceneConfig& c) {
   return text + '\n';
 }
 
+std::string landed_charge_text(const CollectorConfig& c) {
+  if (c.charge == CollectorCharge::grounded) return "no longer acts";
+  if (c.charge == CollectorCharge::kept) return "acts until it leaves";
+  return c.decay_time ? fmt::format("stays and decays within {:.6g} s", *c.decay_time)
+                      : "stays and acts";
+}
+
 /// Times that follow from single numbers of the scene.
 std::string times_text(const Scene& scene) {
   const SceneConfig& c = scene.config;
@@ -212,10 +219,7 @@ std::string run_text(const Scene& scene) {
   text += fmt::format("  jet: {}\n  forces: {}\n", jet_text(scene), forces_text(scene));
   text += c.collector ? fmt::format("  collector: beads land at x = {} m and leave the "
                                     "chain; the charge of a landed bead {}\n",
-                                    c.collector->distance,
-                                    c.collector->charge == CollectorCharge::grounded
-                                        ? "no longer acts"
-                                        : "acts until it leaves")
+                                    c.collector->distance, landed_charge_text(*c.collector))
                       : "  collector: none, beads fly on\n";
   if (c.varicosity)
     text += fmt::format(

@@ -17,6 +17,7 @@
 #include "ehdjet/forces/gravity.hpp"
 #include "ehdjet/forces/hencky_elasticity.hpp"
 #include "ehdjet/forces/herschel_bulkley.hpp"
+#include "ehdjet/forces/mat_force.hpp"
 #include "ehdjet/forces/maxwell.hpp"
 #include "ehdjet/forces/near_field.hpp"
 #include "ehdjet/forces/nozzle_thread.hpp"
@@ -314,6 +315,15 @@ void add_rheology(const SceneConfig& c, JetDynamics& dynamics) {
     dynamics.add(std::make_unique<ViscousStress>(eta));
 }
 
+void add_mat(const Scene& scene, JetDynamics& dynamics) {
+  SolverOptions options = solver_options(scene.config, scene.costs);
+  options.check_every.reset();
+  const CollectorConfig& c = *scene.config.collector;
+  dynamics.insulate_collector();
+  dynamics.add(
+      std::make_unique<MatForce>(plate_of(c), c.decay_time, make_coulomb_solver(options)));
+}
+
 std::unique_ptr<JetDynamics> compose_dynamics(const Scene& scene,
                                               std::shared_ptr<const Inflow> inflow) {
   const SceneConfig& c = scene.config;
@@ -335,6 +345,8 @@ std::unique_ptr<JetDynamics> compose_dynamics(const Scene& scene,
   if (c.coulomb)
     dynamics->add(std::make_unique<CoulombForce>(
         make_coulomb_solver(solver_options(c, scene.costs))));
+  if (c.collector && c.collector->charge == CollectorCharge::kept_on_mat)
+    add_mat(scene, *dynamics);
   if (has_near_field(c)) add_near_field(c, *dynamics);
   if (c.nozzle && c.nozzle->inflow == InflowKind::pump) {
     dynamics->add(std::make_unique<FeedMomentum>());
@@ -381,6 +393,7 @@ std::unique_ptr<TwoRate> build_two_rate(const Scene& scene, const JetDynamics& w
     auto dynamics = std::make_unique<JetDynamics>();
     dynamics->set_inflow(inflow);
     if (whole.constraints().grounded_collector) dynamics->ground_collector();
+    if (whole.constraints().insulating_collector) dynamics->insulate_collector();
     dynamics->move_collector(whole.constraints().plate_velocity);
     return dynamics;
   };
@@ -394,7 +407,10 @@ std::unique_ptr<TwoRate> build_two_rate(const Scene& scene, const JetDynamics& w
   parts.downstream = part();
   for (const auto& term : whole.terms()) {
     parts.downstream->add(term);
-    if (dynamic_cast<const CoulombForce*>(term.get()) == nullptr) inner->add(term);
+    // The inner beads feel the mat with all that is distant.
+    if (dynamic_cast<const CoulombForce*>(term.get()) == nullptr
+        && dynamic_cast<const MatForce*>(term.get()) == nullptr)
+      inner->add(term);
   }
   inner->add(std::make_unique<CoulombForce>(make_coulomb_solver({.solver = "direct"})));
   inner->add(parts.field);
@@ -420,6 +436,7 @@ std::unique_ptr<TwoRate> build_two_rate(const Scene& scene, const JetDynamics& w
       .adapts = !c.integrator.inner_beads,
       .fewest_beads = c.integrator.method == "auto" ? worth_it : possible};
   if (c.collector) options.collector = c.collector->distance;
+  if (c.collector) options.decay_time = c.collector->decay_time;
   return std::make_unique<TwoRate>(std::move(parts), options);
 }
 
@@ -462,8 +479,12 @@ std::unique_ptr<Simulation> build_simulation(const Scene& scene, Extras extras) 
                         && c.integrator.events == EventPlacement::located
                         && c.integrator.landings == LandingSteps::automatic;
   if (c.collector)
-    simulation->add(
-        std::make_unique<Landing>(plate_of(*c.collector), first_is_free ? 0 : 1, may_pass));
+    simulation->add(std::make_unique<Landing>(
+        plate_of(*c.collector),
+        Landing::Options{.first_bead = first_is_free ? std::size_t{0} : std::size_t{1},
+                         .may_pass = may_pass,
+                         .charges_mat = c.collector->charge == CollectorCharge::kept_on_mat,
+                         .decay_time = c.collector->decay_time}));
   if (inflow)
     for (auto& event : inflow->events()) simulation->add(std::move(event));
   if (c.field && c.field->frequency)

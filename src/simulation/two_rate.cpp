@@ -85,7 +85,7 @@ void join(const JetState& inner, std::size_t rows, const JetState& jet,
     std::ranges::copy(above.first(rows), out.carried(c).begin());
     std::ranges::copy(below.subspan(from), out.carried(c).begin() + behind);
   }
-  out.field_is_off = jet.field_is_off;
+  out.field_is_off = jet.field_is_off, out.mat = jet.mat;
   out.landed = jet.landed;
   for (LandedBead& b : out.landed) b.bead += rows - from;
 }
@@ -302,20 +302,28 @@ void TwoRate::take_back_inner(double end) {
 
 /// Of the beads that act on the inner ones by extrapolation only.
 void TwoRate::learn_distant_field() {
-  const std::size_t n = jet_->beads(), count = n - distant_;
+  const std::size_t n = jet_->beads(), beads = n - distant_,
+                    mat = jet_->mat ? jet_->mat->size() : 0, count = beads + mat;
   if (count == 0) return;
   const JetState& inner = parts_.inner->jet();
   const std::size_t free = inner.beads() - (distant_ - inner_beads_ - buffer_beads);
   const Vec3View places = three_columns(places_, count);
-  parts_.predictor->places(inner.time, distant_, places);
+  parts_.predictor->places(inner.time, distant_, rows_of(places, 0, beads));
   charge_.assign(std::next(jet_->charge.begin(), static_cast<std::ptrdiff_t>(distant_)),
                  jet_->charge.end());
   if (parts_.downstream->constraints().grounded_collector)
     for (const LandedBead& b : jet_->landed)
       if (b.bead >= distant_) charge_[b.bead - distant_] = 0;
-  if (options_.collector) // who has passed it has left
-    for (std::size_t i = 0; i < count; ++i)
-      if (places.x[i] > *options_.collector) charge_[i] = 0;
+  const bool insulating = parts_.downstream->constraints().insulating_collector;
+  if (options_.collector) // who has passed it has left, or rests on it
+    for (std::size_t i = 0; i < beads; ++i) {
+      if (!(places.x[i] > *options_.collector)) continue;
+      if (insulating)
+        places.x[i] = *options_.collector;
+      else
+        charge_[i] = 0;
+    }
+  if (mat > 0) add_mat(rows_of(places, beads, count), inner.time);
   buffer_.assign(3 * free, 0.0);
   ones_.resize(std::max(ones_.size(), free), 1.0);
   parts_.inward->add_force_from(
@@ -324,6 +332,17 @@ void TwoRate::learn_distant_field() {
       three_columns(buffer_, free));
   parts_.field->learn(inner.time, buffer_, free);
   pairs_ += static_cast<double>(free * count);
+}
+
+/// The charges on the collector at time t, behind those of the distant beads.
+void TwoRate::add_mat(Vec3View places, double t) {
+  const Mat& mat = *jet_->mat;
+  const double share = mat.remaining(t, options_.decay_time);
+  const Vec3 way = t * parts_.downstream->constraints().plate_velocity;
+  for (std::size_t i = 0; i < mat.size(); ++i) {
+    places.set(i, mat.place()[i] + way);
+    charge_.push_back(share * mat.charge[i]);
+  }
 }
 
 /// field (targets) += that of beads [first, last) with the charges that act at the time of the chain.

@@ -12,7 +12,7 @@
 #include "support/continued.hpp"
 #include "support/refined.hpp"
 
-// External fields that change in time (model 2.4).
+// External fields that change in time (model 2.6).
 namespace ehdjet {
 namespace {
 

@@ -7,6 +7,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -43,6 +44,8 @@ struct Constraints {
   HeldEnds ends = {};
   /// Landed beads rest in the place of their image charges and act on no other bead (model 5).
   bool grounded_collector = false;
+  /// Landed beads keep their charges when they leave the chain (model 5.2).
+  bool insulating_collector = false;
   /// Of the collector, and so of landed beads (model 5.1) [m/s].
   Vec3 plate_velocity = Vec3::Zero();
   LedParts led = {};
@@ -104,6 +107,7 @@ private:
   std::vector<std::vector<double>> declared_; // further carried columns
   std::vector<std::uint8_t> moves_;
   std::vector<LandedBead> landed_;
+  std::shared_ptr<const Mat> mat_;
   std::vector<std::size_t> held_, frozen_;
   bool has_led_bead_ = false;
   LinkContent full_;     // of bead 1, while an inflow changes how it acts

@@ -38,6 +38,8 @@ public:
   void hold(HeldEnds ends);
   /// Beads that have landed act on no other bead.
   void ground_collector();
+  /// Landed beads keep acting when they have left the chain.
+  void insulate_collector();
   /// Landed beads move with the collector (model 5.1).
   void move_collector(const Vec3& velocity);
   /// Only a part of the chain moves freely, and rates are those of this part. If the head is led, the

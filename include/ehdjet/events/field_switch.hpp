@@ -9,7 +9,7 @@ namespace ehdjet {
 
 /// A field of a square wave is switched at the multiples of half a period: on while
 ///
-///     sin(2 pi f t) > 0                                                           (model 2.4)
+///     sin(2 pi f t) > 0                                                           (model 2.6)
 ///
 /// The state of the switch belongs to the jet, so that the field is constant within every step.
 class FieldSwitch final : public Event {

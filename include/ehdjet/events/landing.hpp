@@ -26,12 +26,15 @@ namespace ehdjet {
 /// end of the step. What that does to the motion is part of the error estimate.
 class Landing final : public Event {
 public:
-  /// `first_bead`: 1 behind a nozzle, 0 for a chain whose bead 0 is
-  /// like any other; `may_pass`: steps need not end at frequent landings.
-  explicit Landing(const Plate& plate, std::size_t first_bead = 1, bool may_pass = false)
+  struct Options {
+    std::size_t first_bead = 1;            ///< 0 for a chain whose bead 0 is like any other
+    bool may_pass = false;                 ///< steps need not end at frequent landings
+    bool charges_mat = false;              ///< charges stay on the collector (model 5.2)
+    std::optional<double> decay_time = {}; ///< of those charges [s]
+  };
+  Landing(const Plate& plate, const Options& options)
       : plate_(plate)
-      , first_bead_(first_bead)
-      , may_pass_(may_pass) {}
+      , options_(options) {}
   [[nodiscard]] std::string_view name() const override { return "landing"; }
   [[nodiscard]] Channel channel() const override;
   [[nodiscard]] bool due(const JetState& jet) const override;
@@ -69,6 +72,7 @@ private:
   void put_on_collector(JetState& jet, std::size_t bead, const Arrival& arrival,
                         double t) const;
   void remove_leading(EventContext& context, double time) const;
+  void leave_chain(JetState& jet, double time) const;
   void keep_pace(EventContext& context, std::size_t landings);
 
   template <class Reached, class Found>
@@ -76,8 +80,7 @@ private:
                         const Found& found) const;
 
   Plate plate_;
-  std::size_t first_bead_;
-  bool may_pass_;
+  Options options_;
   std::optional<std::size_t>
       located_;                    // the bead that ends the step, from the end of the chain
   bool only_passed_ = false;       // those that landed last

@@ -10,7 +10,7 @@ namespace ehdjet {
 ///
 ///     F_k = q_k E(t) x,   E = Phi0/h                                    (model 2)
 ///     E(t) = Phi0/h or 0                     switched: Stage::field_is_off
-///     E(t) = (Phi0/h) (1 - exp(-t/tau))      charged through a resistor      (model 2.4)
+///     E(t) = (Phi0/h) (1 - exp(-t/tau))      charged through a resistor      (model 2.6)
 class ExternalField final : public ForceTerm {
 public:
   struct Options {

@@ -3,6 +3,7 @@
 #include "ehdjet/core/checkpoint.hpp"
 #include "ehdjet/jet/bead_table.hpp"
 #include "ehdjet/jet/jet_columns.hpp"
+#include "ehdjet/jet/mat.hpp"
 
 #include <array>
 #include <cstddef>
@@ -38,8 +39,10 @@ struct JetState {
   std::vector<std::vector<double>> declared; ///< further carried columns
   bool has_embryo = false;
   double fed_since = 0;           ///< when link 1 was cut last, if the inflow feeds it [s]
-  bool field_is_off = false;      ///< of a field that is switched (model 2.4)
+  bool field_is_off = false;      ///< of a field that is switched (model 2.6)
   std::vector<LandedBead> landed; ///< still in the chain, ascending bead index
+  std::shared_ptr<const Mat>
+      mat; ///< charges of the fibre on an insulating collector, or none
   /// While beads land every few steps: the plane beyond which, during a step, a bead counts as
   /// resting where it crossed (model 5). None: each landing ends a step [m].
   std::optional<double> absorbing_plane;
@@ -76,7 +79,7 @@ void archive(const Archive& a, JetState& jet);
 /// A jet of that many beads whose columns are all zero.
 [[nodiscard]] JetState blank_jet(std::shared_ptr<const BeadTable> table, std::size_t beads);
 
-/// A blank jet with the time, the state of embryo, feed and field, and the absorbing plane of another jet, without
+/// A blank jet with the time, the state of embryo, feed and field, the mat and the absorbing plane of another jet, without
 /// its landed beads: a start for putting that jet on another mesh.
 [[nodiscard]] JetState blank_like(const JetState& jet, std::size_t beads);
 

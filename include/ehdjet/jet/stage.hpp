@@ -28,6 +28,7 @@ public:
   std::size_t first = 1;      ///< first bead below bead 0 with local forces
   const Feed* feed = nullptr; ///< what flows into link 1; null: nothing does
   bool field_is_off = false;  ///< of a field that is switched
+  const Mat* mat = nullptr;   ///< charges that act and are no targets; null: there are none
   std::span<const LandedBead> landed;
   Vec3 plate_velocity = Vec3::Zero();  ///< of landed beads [m/s]
   std::span<const std::uint8_t> moves; ///< 1: the bead moves freely

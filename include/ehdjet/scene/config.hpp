@@ -31,12 +31,12 @@ enum class SurfaceTensionForm { paper, line };
 enum class EventPlacement { located, step_end };
 /// Whether steps go on through landings while those are frequent (model 5).
 enum class LandingSteps { automatic, located };
-/// How the external field changes in time (model 2.4).
+/// How the external field changes in time (model 2.6).
 enum class FieldWaveform { constant, square, rc };
 /// How fluid enters a jet at its nozzle (model 4).
 enum class InflowKind { embryo, pump };
 /// What the charge of a bead does once it rests on the collector (model 5).
-enum class CollectorCharge { grounded, kept };
+enum class CollectorCharge { grounded, kept, kept_on_mat };
 /// What is added to the forces between the beads so that they act like a thread (model 3.1).
 enum class NearFieldForm { point, free_surface, fixed };
 /// How links that have become too long are refined (model 7).
@@ -191,6 +191,7 @@ struct SurfaceTensionConfig {
 struct CollectorConfig {
   double distance = 0; ///< h [m]
   CollectorCharge charge = CollectorCharge::grounded;
+  std::optional<double> decay_time = {};              ///< of the charges on a mat, tau [s]
   std::optional<std::array<double, 3>> velocity = {}; ///< U, 0 along x [m/s]
   bool operator==(const CollectorConfig&) const = default;
 };

@@ -78,8 +78,10 @@ inline constexpr Choices<SurfaceTensionForm, 2> surface_tension_forms{
     {{"paper", SurfaceTensionForm::paper}, {"line", SurfaceTensionForm::line}}};
 inline constexpr Choices<InflowKind, 2> inflow_kinds{
     {{"embryo", InflowKind::embryo}, {"pump", InflowKind::pump}}};
-inline constexpr Choices<CollectorCharge, 2> collector_charges{
-    {{"grounded", CollectorCharge::grounded}, {"kept", CollectorCharge::kept}}};
+inline constexpr Choices<CollectorCharge, 3> collector_charges{
+    {{"grounded", CollectorCharge::grounded},
+     {"kept", CollectorCharge::kept},
+     {"kept-on-mat", CollectorCharge::kept_on_mat}}};
 inline constexpr Choices<FieldWaveform, 3> field_waveforms{
     {{"constant", FieldWaveform::constant},
      {"square", FieldWaveform::square},
@@ -219,7 +221,11 @@ void describe(V& v, CollectorConfig& c) {
              "distance from the nozzle, h; more than two link lengths");
   v.optional("charge", c.charge, collector_charges,
              "the charge of a bead that rests on the grounded collector acts on no other "
-             "bead, or it is kept until the bead leaves (the paper)");
+             "bead, it is kept until the bead leaves (the paper), or it stays on the "
+             "insulating collector and acts from there");
+  v.optional("decay_time", c.decay_time, positive("s", longest_time),
+             "charges on an insulating collector decay as exp(-t/decay_time)",
+             "they do not");
   v.optional("velocity", c.velocity, Triple{between("m/s", -1e3, 1e3)},
              "velocity of the collector in its plane, [0, vy, vz]; the deposit is then in "
              "coordinates that move with it",

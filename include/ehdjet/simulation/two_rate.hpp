@@ -45,9 +45,10 @@ public:
     std::size_t inner_beads = 24; ///< m
     double rtol = 1e-5;           ///< of the inner beads
     bool adapts = true; ///< m grows where the beads around it limit the macro step
-    std::size_t fewest_beads = 0;         ///< a shorter chain has one rate
-    std::optional<double> collector = {}; ///< its distance [m]
-    double longest = 4e-4;                ///< macro step [s]
+    std::size_t fewest_beads = 0;          ///< a shorter chain has one rate
+    std::optional<double> collector = {};  ///< its distance [m]
+    double longest = 4e-4;                 ///< macro step [s]
+    std::optional<double> decay_time = {}; ///< of charges on an insulating collector [s]
   };
   /// How the two parts move. `inner`: with the events of the inflow; its equations of motion have `field`
   /// among their terms. `downstream` has `projected` among its terms.
@@ -108,6 +109,7 @@ private:
   bool run_inner(double end);
   void take_back_inner(double end);
   void learn_distant_field();
+  void add_mat(Vec3View places, double t);
   void add_field_of(const JetState& chain, std::size_t first, std::size_t last,
                     ConstVec3View targets, Vec3View field);
   [[nodiscard]] double mismatch() const;
