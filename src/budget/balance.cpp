@@ -206,7 +206,7 @@ JetTotals Balance::totals(const JetState& jet, bool with_coulomb_energy) {
       totals.elastic_energy += term.energy(stage);
     const std::string& energy = accounts_[i].energy;
     if (with_coulomb_energy
-        && (energy == "coulomb_energy" || energy == "mat_energy"
+        && (energy == "coulomb_energy" || energy == "mat_energy" || energy == "image_energy"
             || energy == "near_field_energy" || energy == "softening_energy"))
       totals.coulomb_energy += term.energy(stage);
   }

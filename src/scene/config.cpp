@@ -33,6 +33,15 @@ double ViscoelasticityConfig::instant_viscosity() const {
   return 3 * solvent_viscosity.value_or(0); // Trouton's ratio
 }
 
+bool has_images(const SceneConfig& c) {
+  return c.collector && c.collector->images != CollectorImages::none;
+}
+
+bool has_nozzle_charge(const SceneConfig& c) {
+  return c.coulomb && c.nozzle && c.nozzle->inflow == InflowKind::pump
+         && !(c.collector && c.collector->images == CollectorImages::plates);
+}
+
 bool has_near_field(const SceneConfig& c) {
   return c.coulomb && c.coulomb->near_field != NearFieldForm::point;
 }

@@ -150,6 +150,26 @@ void check_waveform(const SceneConfig& c, const SceneText& text) {
   check("time_constant", c.field->time_constant, "s", FieldWaveform::rc);
 }
 
+void check_images(const SceneConfig& c, const SceneText& text) {
+  if (!has_images(c)) return;
+  const auto refuse = [&](const char* why) {
+    text.fail("collector.images",
+              fmt::format("collector.images = \"{}\" {}",
+                          name_of(c.collector->images, collector_images), why));
+  };
+  if (!c.coulomb)
+    refuse("needs [coulomb]: without it charges do not act on each other, nor do their "
+           "images");
+  if (c.collector->charge != CollectorCharge::grounded)
+    refuse(
+        "needs collector.charge = \"grounded\" (the default): a charge on a conductor is "
+        "cancelled by its image");
+  if (c.collector->images == CollectorImages::plates
+      && !(c.nozzle && c.nozzle->inflow == InflowKind::pump))
+    refuse("needs nozzle.inflow = \"pump\": the nozzle's plate takes away the push of the "
+           "nozzle bead that draws beads out of it. Take \"collector\"");
+}
+
 void check_collector(const SceneConfig& c, const SceneText& text) {
   if (!c.collector) return;
   const auto& u = c.collector->velocity;
@@ -165,6 +185,7 @@ void check_collector(const SceneConfig& c, const SceneText& text) {
     text.fail("collector.charge",
               "collector.charge = \"kept-on-mat\" needs [coulomb]: without it charges do "
               "not act on each other");
+  check_images(c, text);
   if (c.collector->decay_time && !has_mat)
     text.fail("collector.decay_time",
               fmt::format("collector.decay_time = {} s needs collector.charge = "
@@ -359,7 +380,9 @@ void check_two_rates(const SceneConfig& c, const SceneText& text) {
   };
   const char* missing = !c.nozzle    ? "[nozzle], where the fast beads are"
                         : !c.coulomb ? "[coulomb], whose sums it saves"
-                                     : nullptr;
+                        : has_images(c)
+                            ? "collector.images = \"none\": images of near beads are far"
+                            : nullptr;
   if (named && missing != nullptr)
     refuse("method",
            fmt::format("integrator.method = \"two-rate\" needs {}. Take \"auto\" (the "

@@ -119,8 +119,10 @@ std::string forces_text(const Scene& scene) {
   if (c.gravity)
     forces.push_back(fmt::format("gravity {:.6g} m/s^2", c.gravity->acceleration));
   if (c.coulomb) forces.push_back(fmt::format("Coulomb ({})", coulomb_text(scene)));
-  if (c.coulomb && c.nozzle && c.nozzle->inflow == InflowKind::pump)
-    forces.emplace_back("charge in the nozzle");
+  if (has_nozzle_charge(c)) forces.emplace_back("charge in the nozzle");
+  if (has_images(c))
+    forces.push_back(
+        fmt::format("images ({})", name_of(c.collector->images, collector_images)));
   if (has_near_field(c))
     forces.push_back(fmt::format("near field ({}{})",
                                  name_of(c.coulomb->near_field, near_field_forms),

@@ -17,6 +17,7 @@
 #include "ehdjet/forces/gravity.hpp"
 #include "ehdjet/forces/hencky_elasticity.hpp"
 #include "ehdjet/forces/herschel_bulkley.hpp"
+#include "ehdjet/forces/images.hpp"
 #include "ehdjet/forces/mat_force.hpp"
 #include "ehdjet/forces/maxwell.hpp"
 #include "ehdjet/forces/near_field.hpp"
@@ -324,6 +325,16 @@ void add_mat(const Scene& scene, JetDynamics& dynamics) {
       std::make_unique<MatForce>(plate_of(c), c.decay_time, make_coulomb_solver(options)));
 }
 
+void add_images(const Scene& scene, JetDynamics& dynamics) {
+  SolverOptions options = solver_options(scene.config, scene.costs);
+  options.check_every.reset();
+  const CollectorConfig& c = *scene.config.collector;
+  const Mirrors mirrors{.distance = c.distance,
+                        .both_plates = c.images == CollectorImages::plates};
+  dynamics.add(std::make_unique<ImageForce>(mirrors, make_coulomb_solver(options)));
+  dynamics.add(std::make_unique<OwnImages>(mirrors));
+}
+
 std::unique_ptr<JetDynamics> compose_dynamics(const Scene& scene,
                                               std::shared_ptr<const Inflow> inflow) {
   const SceneConfig& c = scene.config;
@@ -347,10 +358,11 @@ std::unique_ptr<JetDynamics> compose_dynamics(const Scene& scene,
         make_coulomb_solver(solver_options(c, scene.costs))));
   if (c.collector && c.collector->charge == CollectorCharge::kept_on_mat)
     add_mat(scene, *dynamics);
+  if (has_images(c)) add_images(scene, *dynamics);
   if (has_near_field(c)) add_near_field(c, *dynamics);
   if (c.nozzle && c.nozzle->inflow == InflowKind::pump) {
     dynamics->add(std::make_unique<FeedMomentum>());
-    if (c.coulomb)
+    if (has_nozzle_charge(c))
       dynamics->add(std::make_unique<NozzleThread>(
           c.nozzle->fluid_charge_density() * c.nozzle->section(),
           c.nozzle->nozzle_charge_length.value_or(default_nozzle_charge_length),
@@ -377,9 +389,10 @@ bool cuts_at_step_ends(const SceneConfig& c) {
 /// Whether a scene can be simulated with two rates, and its own method allows it.
 bool may_use_two_rates(const SceneConfig& c, const Extras& extras) {
   const IntegratorConfig& i = c.integrator;
-  return (i.method == "auto" || i.method == "two-rate") && c.nozzle && c.coulomb && i.rtol
-         && i.events == EventPlacement::located && i.landings == LandingSteps::automatic
-         && extras.forces.empty() && !cuts_at_step_ends(c);
+  return (i.method == "auto" || i.method == "two-rate") && c.nozzle && c.coulomb
+         && !has_images(c) && i.rtol && i.events == EventPlacement::located
+         && i.landings == LandingSteps::automatic && extras.forces.empty()
+         && !cuts_at_step_ends(c);
 }
 
 /// The inner beads as a simulation of their own, and the equations of motion of the others: the terms of

@@ -269,6 +269,24 @@ const Wrong wrong_scenes[] = {
      "distance = 0.16\ncharge = \"kept-on-mat\"\n[field]\npotential = "
      "9000\n[gravity]\nacceleration = 9.80665",
      {"s.toml:12: ", "collector.charge = \"kept-on-mat\"", "[coulomb]"}},
+    {"images_in_an_insulating_collector",
+     "distance = 0.16",
+     "distance = 0.16\nimages = \"collector\"\ncharge = \"kept\"",
+     {"s.toml:12: ", "collector.images = \"collector\"",
+      "collector.charge = \"grounded\""}},
+    {"image_of_a_nozzle_without_a_pump",
+     "distance = 0.16",
+     "distance = 0.16\nimages = \"plates\"",
+     {"s.toml:12: ", "collector.images = \"plates\"", "nozzle.inflow = \"pump\""}},
+    {"images_with_two_rates",
+     "distance = 0.16\n[field]\npotential = 9000\n[gravity]\nacceleration = "
+     "9.80665\n[coulomb]\n[viscoelasticity]\nelastic_modulus = 5e3\nviscosity = "
+     "2\n[surface_tension]\ncoefficient = 0.021\n[integrator]",
+     "distance = 0.16\nimages = \"collector\"\n[field]\npotential = 9000\n[gravity]\n"
+     "acceleration = 9.80665\n[coulomb]\n[viscoelasticity]\nelastic_modulus = "
+     "5e3\nviscosity = 2\n[surface_tension]\ncoefficient = "
+     "0.021\n[integrator]\nmethod = \"two-rate\"",
+     {"s.toml:24: ", "integrator.method = \"two-rate\"", "collector.images = \"none\""}},
     {"pump_without_flow",
      "velocity = 3e-3",
      "inflow = \"pump\"",

@@ -145,6 +145,17 @@ TEST(MovingCollector, has_a_budget_that_closes) {
   }
 }
 
+// scenes/drum.toml: the plate has carried the first beads to y - 2 m/s t.
+TEST(MovingCollector, winds_the_fibre_of_the_scene_of_a_drum) {
+  const Scene scene = read_scene(EHDJET_SCENES "/drum.toml");
+  const auto deposit = deposit_of(scene, 25e-3);
+  ASSERT_GE(deposit.size(), 400U);
+  double sum = 0, count = 0;
+  for (const DepositedBead& b : deposit)
+    if (b.time > 20e-3) sum += b.bead.position.y() + 2 * b.time, count += 1;
+  EXPECT_LE(std::abs(sum / count), 5e-3); // the middle of the circles in the laboratory
+}
+
 // Landings inside macro steps.
 TEST(MovingCollector, is_the_same_with_two_rates) {
   Scene scene = refined_case(0.4 * cm, 1e-3, 1e-6);

@@ -31,6 +31,8 @@ enum class SurfaceTensionForm { paper, line };
 enum class EventPlacement { located, step_end };
 /// Whether steps go on through landings while those are frequent (model 5).
 enum class LandingSteps { automatic, located };
+/// In which plates charges have images (model 3.2).
+enum class CollectorImages { none, collector, plates };
 /// How the external field changes in time (model 2.6).
 enum class FieldWaveform { constant, square, rc };
 /// How fluid enters a jet at its nozzle (model 4).
@@ -191,6 +193,7 @@ struct SurfaceTensionConfig {
 struct CollectorConfig {
   double distance = 0; ///< h [m]
   CollectorCharge charge = CollectorCharge::grounded;
+  CollectorImages images = CollectorImages::none;
   std::optional<double> decay_time = {};              ///< of the charges on a mat, tau [s]
   std::optional<std::array<double, 3>> velocity = {}; ///< U, 0 along x [m/s]
   bool operator==(const CollectorConfig&) const = default;
@@ -276,6 +279,9 @@ struct SceneConfig {
   bool operator==(const SceneConfig&) const = default;
 };
 
+/// Whether the charge in a pump's nozzle acts on the jet: its plate would screen it (model 3.2).
+[[nodiscard]] bool has_nozzle_charge(const SceneConfig& config);
+[[nodiscard]] bool has_images(const SceneConfig& config);
 [[nodiscard]] bool has_near_field(const SceneConfig& config);
 /// Whether pairs of close charges are softened (model 3.1).
 [[nodiscard]] bool softens_pairs(const SceneConfig& config);

@@ -82,6 +82,10 @@ inline constexpr Choices<CollectorCharge, 3> collector_charges{
     {{"grounded", CollectorCharge::grounded},
      {"kept", CollectorCharge::kept},
      {"kept-on-mat", CollectorCharge::kept_on_mat}}};
+inline constexpr Choices<CollectorImages, 3> collector_images{
+    {{"none", CollectorImages::none},
+     {"collector", CollectorImages::collector},
+     {"plates", CollectorImages::plates}}};
 inline constexpr Choices<FieldWaveform, 3> field_waveforms{
     {{"constant", FieldWaveform::constant},
      {"square", FieldWaveform::square},
@@ -223,6 +227,10 @@ void describe(V& v, CollectorConfig& c) {
              "the charge of a bead that rests on the grounded collector acts on no other "
              "bead, it is kept until the bead leaves (the paper), or it stays on the "
              "insulating collector and acts from there");
+  v.optional(
+      "images", c.images, collector_images,
+      "charges have images in the grounded collector, or in it and in the plate of a "
+      "pump's nozzle");
   v.optional("decay_time", c.decay_time, positive("s", longest_time),
              "charges on an insulating collector decay as exp(-t/decay_time)",
              "they do not");
