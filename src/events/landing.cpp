@@ -220,13 +220,13 @@ void Landing::remove_leading(EventContext& context, double time) const {
   const std::size_t leading = jet.links();
   const LandedBead& landed = jet.landed.back();
   const double length = link_length(jet, leading); // none where beads land on each other
-  DepositedBead deposited{
-      .time = landed.time,
-      .removal_time = time,
-      .bead = bead_at(jet, leading),
-      .landing_radius = landed.radius,
-      .radius =
-          length > 0 ? link_radius(link_volume(jet, leading), length) : landed.radius};
+  DepositedBead deposited{.time = landed.time,
+                          .removal_time = time,
+                          .bead = bead_at(jet, leading),
+                          .landing_radius = landed.radius,
+                          .radius = length > 0
+                                        ? link_radius(link_volume(jet, leading), length)
+                                        : landed.radius};
   if (plate_.moves())
     deposited.bead.position = plate_.fixed(deposited.bead.position, jet.time);
   Ledger& ledger = context.ledger;

@@ -244,7 +244,8 @@ void TwoRate::set_rate(const JetState& jet) {
   add_field_of(jet, 0, m, targets, e);
   rate_ = alone_;
   const Vec3View a = JetColumns<double>{rate_, n}.velocity();
-  for (std::size_t k = m; k < n; ++k) a.add(k, jet.charge[k] / link_mass(jet, k) * e[k - m]);
+  for (std::size_t k = m; k < n; ++k)
+    a.add(k, jet.charge[k] / link_mass(jet, k) * e[k - m]);
   rest_landed(jet, rate_);
 }
 

@@ -249,7 +249,7 @@ const Wrong wrong_scenes[] = {
     {"collector_velocity_of_two_numbers",
      "distance = 0.16",
      "distance = 0.16\nvelocity = [2, 0]",
-     {"s.toml:", "collector.velocity = [2, 0] m/s", "three numbers [x, y, z]",
+     {"s.toml:", "collector.velocity = [2, 0]", "three numbers [x, y, z]",
       "from -1000 to 1000 m/s"}},
     {"square_wave_without_frequency",
      "potential = 9000",
