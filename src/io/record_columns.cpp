@@ -22,34 +22,69 @@ Vec3 tip(const JetSnapshot& s) {
   return s.columns.position()[s.columns.beads - 1];
 }
 
+double tip_x(const JetSnapshot& s) {
+  return tip(s).x();
+}
 double tip_from_axis(const JetSnapshot& s) {
   return std::hypot(tip(s).y(), tip(s).z());
 }
+/// Full opening angle of the cone that the tip runs on.
+double aperture(const JetSnapshot& s) {
+  return 2 * std::atan2(tip_from_axis(s), tip(s).x()) * 180 / std::numbers::pi;
+}
+double length_of_path(const JetSnapshot& s) {
+  return path_length(s.columns.position());
+}
 
-/// The change of a sum since the previous row, divided by the time since then.
+/// The change of a sum, of all jets together, since the previous row, divided by the time since then.
 class Rate {
 public:
   explicit Rate(CompensatedSum Ledger::*sum)
       : sum_(sum) {}
-  double operator()(const JetSnapshot& s) {
-    const double now = s.ledger.*sum_, elapsed = s.time - previous_time_;
-    // No time has elapsed in the first row, and if the same time is written twice.
-    const double rate = elapsed > 0 ? (now - previous_) / elapsed : 0.;
-    previous_time_ = s.time, previous_ = now;
-    return rate;
+  double operator()(const JetSnapshot& s) { return rate(s.time, s.ledger.*sum_); }
+  double operator()(const ArraySnapshot& s) {
+    double now = 0;
+    for (const Ledger& ledger : s.ledgers) now += ledger.*sum_;
+    return rate(s.time, now);
   }
 
 private:
+  double rate(double time, double now) {
+    const double elapsed = time - previous_time_;
+    // No time has elapsed in the first row, and if the same time is written twice.
+    const double rate = elapsed > 0 ? (now - previous_) / elapsed : 0.;
+    previous_time_ = time, previous_ = now;
+    return rate;
+  }
+
   CompensatedSum Ledger::*sum_;
   double previous_time_ = std::numeric_limits<double>::infinity(); // [s]
   double previous_ = 0;
 };
 
+/// The mean and the largest over the jets of an array of what `of` says of each.
+template <class Of>
+auto mean(Of of) {
+  return [of](const ArraySnapshot& s) {
+    double sum = 0;
+    for (std::size_t j = 0; j < s.jets.size(); ++j) sum += of(s.jet(j));
+    return sum / static_cast<double>(s.jets.size());
+  };
+}
+template <class Of>
+auto largest(Of of) {
+  return [of](const ArraySnapshot& s) {
+    double value = of(s.jet(0));
+    for (std::size_t j = 1; j < s.jets.size(); ++j) value = std::max(value, of(s.jet(j)));
+    return value;
+  };
+}
+
 auto from_ledger(double Ledger::*value) {
   return [value](const JetSnapshot& s) { return s.ledger.*value; };
 }
 auto from_statistics(std::uint64_t RunStatistics::*value) {
-  return [value](const JetSnapshot& s) { return static_cast<double>(s.statistics.*value); };
+  return [value](const auto& s) { return static_cast<double>(s.statistics.*value); };
 }
 auto change_of(double JetTotals::*value) {
   return [value](const RefinementRecord& r) { return r.change.*value; };
@@ -98,11 +133,9 @@ std::vector<RecordColumn<JetSnapshot>> observable_columns() {
       {{"time", "s", "simulated time"}, [](const auto& s) { return s.time; }},
       {{"beads", "1", "links of the chain: all beads but the nozzle", count},
        [](const auto& s) { return static_cast<double>(s.jet.links()); }},
-      {{"tip_x", "m", "leading bead: distance from the nozzle plane"},
-       [](const auto& s) { return tip(s).x(); }},
+      {{"tip_x", "m", "leading bead: distance from the nozzle plane"}, tip_x},
       {{"tip_yz", "m", "leading bead: distance from the axis"}, tip_from_axis},
-      {{"path_length", "m", "length of the chain, chord by chord"},
-       [](const auto& s) { return path_length(s.columns.position()); }},
+      {{"path_length", "m", "length of the chain, chord by chord"}, length_of_path},
       {{"nozzle_speed", "m/s", "speed given to the last released bead"},
        from_ledger(&Ledger::release_speed)},
       {{"impact_speed", "m/s", "speed of the last landed bead"},
@@ -113,10 +146,7 @@ std::vector<RecordColumn<JetSnapshot>> observable_columns() {
        Rate(&Ledger::inserted_charge)},
       {{"current_out", "A", "charge removed since the previous row, over time"},
        Rate(&Ledger::removed_charge)},
-      {{"aperture", "deg", "2 atan(tip_yz / tip_x)"},
-       [](const auto& s) { // full opening angle of the cone the tip runs on
-         return 2 * std::atan2(tip_from_axis(s), tip(s).x()) * 180 / std::numbers::pi;
-       }},
+      {{"aperture", "deg", "2 atan(tip_yz / tip_x)"}, aperture},
       {{"evaluations", "1", "of the right-hand side, so far", count},
        from_statistics(&RunStatistics::evaluations)},
       {{"steps", "1", "accepted, so far", count}, from_statistics(&RunStatistics::steps)},
@@ -135,6 +165,46 @@ std::vector<RecordColumn<JetSnapshot>> observable_columns() {
        [](const auto& s) {
          return s.statistics.two_rates.value_or(TwoRateRecord{}).full_sums;
        }}};
+}
+
+std::vector<RecordColumn<ArraySnapshot>> array_observable_columns() {
+  const auto links = [](const ArraySnapshot& s) {
+    double sum = 0;
+    for (const JetState& jet : s.jets) sum += static_cast<double>(jet.links());
+    return sum;
+  };
+  return {
+      {{"time", "s", "simulated time"}, [](const auto& s) { return s.time; }},
+      {{"beads", "1", "links of all jets", count}, links},
+      {{"tip_x", "m", "leading bead: distance from the nozzle plane, the largest"},
+       largest(tip_x)},
+      {{"tip_yz", "m", "leading bead: distance from the axis of the array, the largest"},
+       largest(tip_from_axis)},
+      {{"path_length", "m", "length of a jet, chord by chord: mean"}, mean(length_of_path)},
+      {{"nozzle_speed", "m/s", "speed given to the last released bead of a jet: mean"},
+       mean(from_ledger(&Ledger::release_speed))},
+      {{"impact_speed", "m/s", "speed of the last landed bead of a jet: mean"},
+       mean(from_ledger(&Ledger::impact_speed))},
+      {{"collector_radius", "m", "of the last landed link of a jet: mean"},
+       mean(from_ledger(&Ledger::collector_radius))},
+      {{"current_in", "A", "charge inserted since the previous row, over time: sum"},
+       Rate(&Ledger::inserted_charge)},
+      {{"current_out", "A", "charge removed since the previous row, over time: sum"},
+       Rate(&Ledger::removed_charge)},
+      {{"aperture", "deg", "2 atan(tip_yz / tip_x) of a jet, the largest"},
+       largest(aperture)},
+      {{"evaluations", "1", "of the right-hand side of all jets together, so far", count},
+       from_statistics(&RunStatistics::evaluations)},
+      {{"steps", "1", "common steps accepted, so far", count},
+       from_statistics(&RunStatistics::steps)},
+      {{"rejected", "1", "rejected steps, so far", count},
+       from_statistics(&RunStatistics::rejected)},
+      {{"coulomb_error", "1", "relative L2 error of the Coulomb force at its last check"},
+       [](const auto& s) { return s.statistics.coulomb_error.value_or(0); }}};
+}
+
+ColumnInfo jet_column() {
+  return {"jet", "1", "number of the jet in the array: row * columns + column", count};
 }
 
 std::vector<RecordColumn<RefinementRecord>> refinement_columns() {

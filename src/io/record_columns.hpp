@@ -1,6 +1,7 @@
 #pragma once
 
 #include "ehdjet/jet/ledger.hpp"
+#include "ehdjet/observers/array_observer.hpp"
 #include "ehdjet/observers/observer.hpp"
 #include "ehdjet/run_files/run_file.hpp"
 #include "ehdjet/run_files/run_reader.hpp"
@@ -23,6 +24,10 @@ struct RecordColumn : ColumnInfo {
 };
 
 std::vector<RecordColumn<JetSnapshot>> observable_columns();
+/// The same names for all jets of an array: sums, means and largest values, as their descriptions say.
+std::vector<RecordColumn<ArraySnapshot>> array_observable_columns();
+/// The jet that a bead, a deposited bead or a refinement belongs to, in runs of an array.
+[[nodiscard]] ColumnInfo jet_column();
 /// For beads that have the columns of `table`. The deposit always has a column `stress`.
 std::vector<RecordColumn<DepositedBead>>
 deposit_columns(std::shared_ptr<const BeadTable> table);

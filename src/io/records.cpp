@@ -11,43 +11,14 @@
 #include <vector>
 
 #include "record_columns.hpp"
+#include "recorder.hpp"
 
 namespace ehdjet {
 namespace {
 
-constexpr std::size_t chunk_rows = 1024;
-
-/// Writes a part of a run file, at multiples of `interval` [s] or when something happens.
-class Recorder : public Observer {
-public:
-  Recorder(std::shared_ptr<RunFile> file, std::optional<double> interval)
-      : file_(std::move(file)) {
-    EHDJET_EXPECTS(!interval || *interval > 0);
-    if (interval) schedule_.emplace(*interval);
-  }
-  [[nodiscard]] double next_time() const final {
-    return schedule_ ? schedule_->next() : Observer::next_time();
-  }
-  void skip_to(double time) final {
-    if (schedule_) schedule_->skip_to(time);
-  }
-  void observe(const JetSnapshot& snapshot) final {
-    file_->write([&] { append(snapshot); });
-    schedule_->advance();
-  }
-
-protected:
-  virtual void append(const JetSnapshot& snapshot) = 0;
-
-  std::shared_ptr<RunFile> file_;
-
-private:
-  std::optional<Schedule> schedule_;
-};
-
 /// Writes a part of a run file that has one row per `Row`.
 template <class Row>
-class Record final : public Recorder {
+class Record final : public Recorder<Observer, JetSnapshot> {
 public:
   Record(std::shared_ptr<RunFile> file, const char* part,
          std::vector<RecordColumn<Row>> columns, std::optional<double> interval = {},
@@ -81,14 +52,6 @@ private:
   std::vector<Column*> data_sets_;
 };
 
-/// Removes the column of that name unless it is `wanted`.
-template <class Row>
-std::vector<RecordColumn<Row>> with(bool wanted, std::string_view name,
-                                    std::vector<RecordColumn<Row>> columns) {
-  if (!wanted) std::erase_if(columns, [&](const auto& c) { return c.name == name; });
-  return columns;
-}
-
 /// Appends the columns of `accounts`, the first of which has the others measured.
 void append(std::vector<RecordColumn<JetSnapshot>>& columns,
             const std::shared_ptr<Accounts>& accounts) {
@@ -103,20 +66,14 @@ void append(std::vector<RecordColumn<JetSnapshot>>& columns,
 }
 
 /// Writes all beads of a frame one after the other, and where each frame ends.
-class Frames final : public Recorder {
+class Frames final : public Recorder<Observer, JetSnapshot> {
 public:
   Frames(std::shared_ptr<RunFile> file, double interval, const BeadTable& table)
       : Recorder(std::move(file), interval)
       , columns_(frame_columns(table)) {
     for (const FrameColumn& c : columns_)
       data_sets_.push_back(&file_->add_column("beads", c, 4 * chunk_rows));
-    time_ = &file_->add_column("frames", {"time", "s", "of each frame"}, chunk_rows);
-    offset_ = &file_->add_column("frames",
-                                 {"offset", "1",
-                                  "frame k is the rows offset[k] to offset[k+1] of /beads",
-                                  ColumnType::count},
-                                 chunk_rows);
-    offset_->append(0);
+    times_ = std::make_unique<FrameTimes>(*file_);
     file_->flush();
   }
 
@@ -125,18 +82,15 @@ private:
     EHDJET_EXPECTS(snapshot.columns.beads == snapshot.jet.beads());
     for (std::size_t i = 0; i < columns_.size(); ++i)
       data_sets_[i]->append(columns_[i].values(snapshot));
-    rows_ += snapshot.jet.beads();
-    time_->append(snapshot.time);
-    offset_->append(static_cast<double>(rows_)); // last: it completes the frame
+    times_->append(snapshot.time, snapshot.jet.beads());
   }
 
   std::vector<FrameColumn> columns_;
   std::vector<Column*> data_sets_;
-  Column *time_ = nullptr, *offset_ = nullptr;
-  std::size_t rows_ = 0;
+  std::unique_ptr<FrameTimes> times_;
 };
 
-class ResolvingPower final : public Recorder {
+class ResolvingPower final : public Recorder<Observer, JetSnapshot> {
 public:
   ResolvingPower(std::shared_ptr<RunFile> file, double interval, double link_length)
       : Recorder(std::move(file), interval)

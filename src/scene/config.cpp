@@ -42,6 +42,18 @@ bool has_nozzle_charge(const SceneConfig& c) {
          && !(c.collector && c.collector->images == CollectorImages::plates);
 }
 
+JetAxis ArrayConfig::axis(std::size_t j) const {
+  const auto from_middle = [this](std::size_t place, std::size_t places) {
+    return (static_cast<double>(place) - static_cast<double>(places - 1) / 2) * spacing;
+  };
+  return {.y = from_middle(j % columns, columns), .z = from_middle(j / columns, rows)};
+}
+
+double ArrayConfig::phase(std::size_t j) const {
+  if (phases == ArrayPhases::equal) return 0;
+  return 2 * std::numbers::pi * static_cast<double>(j) / static_cast<double>(jets());
+}
+
 bool has_near_field(const SceneConfig& c) {
   return c.coulomb && c.coulomb->near_field != NearFieldForm::point;
 }

@@ -402,16 +402,17 @@ void check_two_rates(const SceneConfig& c, const SceneText& text) {
                      "refinement.interval: without it links are cut at the ends of steps, "
                      "and these steps are "
                      "long");
-  const bool may = (named || i.method == "auto") && missing == nullptr;
+  const bool may = (named || i.method == "auto") && missing == nullptr && !c.array;
   for (const auto& [key, given] : {std::pair{"inner_beads", i.inner_beads.has_value()},
                                    {"downstream_rtol", i.downstream_rtol.has_value()}})
     if (given && !may)
-      refuse(key,
-             fmt::format(
-                 "integrator.{} is about two rates, which this scene cannot have: they "
-                 "need [nozzle], [coulomb] and integrator.method = \"two-rate\" or "
-                 "\"auto\". Remove it",
-                 key));
+      refuse(
+          key,
+          fmt::format(
+              "integrator.{} is about two rates, which this scene cannot have: they "
+              "need [nozzle], [coulomb], no [array] and integrator.method = \"two-rate\" "
+              "or \"auto\". Remove it",
+              key));
 }
 
 template <class Refuse>
@@ -567,6 +568,38 @@ void check_varicosity(const SceneConfig& c, const SceneText& text) {
               "false: nothing would differ. Remove [varicosity]");
 }
 
+void check_array(const SceneConfig& c, const SceneText& text) {
+  if (!c.array) return;
+  const ArrayConfig& a = *c.array;
+  if (!c.nozzle)
+    text.fail("array", "[array] needs [nozzle]: its jets are born at nozzles. A scene with "
+                       "[chain] has one chain");
+  if (!c.coulomb)
+    text.fail("array", "[array] needs [coulomb]: without it its jets are single jets");
+  const double width = 2 * (c.nozzle->radius + c.nozzle->amplitude);
+  if (a.jets() > 1 && a.spacing < width)
+    text.fail(
+        "array.spacing",
+        fmt::format("array.spacing = {} m: must be at least {} m, twice nozzle.radius "
+                    "+ nozzle.amplitude, or nozzles would overlap",
+                    a.spacing, width));
+  if (c.integrator.method == "two-rate")
+    text.fail("integrator.method",
+              "integrator.method = \"two-rate\" and [array]: all jets of an array take "
+              "common steps of one rate. Take \"auto\" (the default)");
+  const auto refuse = [&](const char* key, bool given, const char* why) {
+    if (given)
+      text.fail(fmt::format("output.{}", key),
+                fmt::format("output.{} and [array]: {}", key, why));
+  };
+  refuse("budget", c.output.budget.has_value(),
+         "a budget is that of a single jet. Remove one");
+  refuse("resolving_power", c.output.resolving_power.has_value(),
+         "the resolving power is sampled along a single jet. Remove one");
+  refuse("refinements", c.output.refinements == RefinementRecords::energies,
+         "the energy of the pairs is that of all jets together. Take \"sums\"");
+}
+
 void check_output(const SceneConfig& c, const SceneText& text) {
   for (const auto& [name, interval] : {std::pair{"observables", c.output.observables},
                                        {"frames", c.output.frames},
@@ -622,6 +655,7 @@ void settle(SceneConfig& config, const SceneText& text) {
   check_air(config, text);
   check_evaporation(config, text);
   check_varicosity(config, text);
+  check_array(config, text);
   check_output(config, text);
 }
 

@@ -22,6 +22,7 @@
 #include "ehdjet/forces/maxwell.hpp"
 #include "ehdjet/forces/near_field.hpp"
 #include "ehdjet/forces/nozzle_thread.hpp"
+#include "ehdjet/forces/shared_coulomb.hpp"
 #include "ehdjet/forces/softened_pairs.hpp"
 #include "ehdjet/forces/surface_tension.hpp"
 #include "ehdjet/forces/tensor_stress.hpp"
@@ -335,8 +336,10 @@ void add_images(const Scene& scene, JetDynamics& dynamics) {
   dynamics.add(std::make_unique<OwnImages>(mirrors));
 }
 
+/// `coulomb`: the Coulomb force on the beads of this jet; none if null.
 std::unique_ptr<JetDynamics> compose_dynamics(const Scene& scene,
-                                              std::shared_ptr<const Inflow> inflow) {
+                                              std::shared_ptr<const Inflow> inflow,
+                                              std::shared_ptr<ForceTerm> coulomb) {
   const SceneConfig& c = scene.config;
   auto dynamics = std::make_unique<JetDynamics>();
   dynamics->set_inflow(std::move(inflow));
@@ -353,9 +356,7 @@ std::unique_ptr<JetDynamics> compose_dynamics(const Scene& scene,
                                .is_switched = c.field->waveform == FieldWaveform::square,
                                .charging_time = c.field->time_constant}));
   if (c.gravity) dynamics->add(std::make_unique<Gravity>(c.gravity->acceleration));
-  if (c.coulomb)
-    dynamics->add(std::make_unique<CoulombForce>(
-        make_coulomb_solver(solver_options(c, scene.costs))));
+  if (coulomb) dynamics->add(std::move(coulomb));
   if (c.collector && c.collector->charge == CollectorCharge::kept_on_mat)
     add_mat(scene, *dynamics);
   if (has_images(c)) add_images(scene, *dynamics);
@@ -379,6 +380,15 @@ std::unique_ptr<JetDynamics> compose_dynamics(const Scene& scene,
                                                 vaporisation_of(*c.evaporation)));
   if (carries_stress(c)) add_rheology(c, *dynamics);
   return dynamics;
+}
+
+std::unique_ptr<CoulombSolver> build_solver(const Scene& scene) {
+  return make_coulomb_solver(solver_options(scene.config, scene.costs));
+}
+
+std::shared_ptr<ForceTerm> build_coulomb(const Scene& scene) {
+  if (!scene.config.coulomb) return nullptr;
+  return std::make_shared<CoulombForce>(build_solver(scene));
 }
 
 /// Links are cut at the end of the step in which they become too long, which must be a short one then.
@@ -456,21 +466,61 @@ std::unique_ptr<TwoRate> build_two_rate(const Scene& scene, const JetDynamics& w
 } // namespace
 
 std::unique_ptr<JetDynamics> build_dynamics(const Scene& scene) {
-  return compose_dynamics(scene, build_inflow(scene.config));
+  return compose_dynamics(scene, build_inflow(scene.config), build_coulomb(scene));
 }
+
+namespace {
+
+StepLimits step_limits(const Scene& scene) {
+  const IntegratorConfig& i = scene.config.integrator;
+  return {.fixed = i.step,
+          .initial = i.initial_step,
+          .longest = i.max_step.value_or(StepLimits{}.longest),
+          .shortest = i.min_step,
+          .shortest_link = shortest_link(scene)};
+}
+
+/// What happens to a jet, in the order in which events at the same instant are applied (model 5).
+/// `jets`: how many of them take common steps.
+std::vector<std::unique_ptr<Event>> build_events(const SceneConfig& c,
+                                                 const InflowRule* inflow,
+                                                 const JetDynamics& dynamics,
+                                                 std::size_t jets) {
+  std::vector<std::unique_ptr<Event>> events;
+  const bool first_is_free =
+      c.chain && c.chain->fixed != FixedEnds::first && c.chain->fixed != FixedEnds::both;
+  // With fixed steps, for studies of convergence, every landing ends a step.
+  const bool may_pass = c.integrator.rtol.has_value()
+                        && c.integrator.events == EventPlacement::located
+                        && c.integrator.landings == LandingSteps::automatic;
+  if (c.collector)
+    events.push_back(std::make_unique<Landing>(
+        plate_of(*c.collector),
+        Landing::Options{.first_bead = first_is_free ? std::size_t{0} : std::size_t{1},
+                         .may_pass = may_pass,
+                         .charges_mat = c.collector->charge == CollectorCharge::kept_on_mat,
+                         .decay_time = c.collector->decay_time,
+                         .jets = jets}));
+  if (inflow != nullptr)
+    for (auto& event : inflow->events()) events.push_back(std::move(event));
+  if (c.field && c.field->frequency)
+    events.push_back(std::make_unique<FieldSwitch>(*c.field->frequency));
+  if (c.refinement) events.push_back(build_refinement(c, dynamics));
+  return events;
+}
+
+} // namespace
 
 std::unique_ptr<Simulation> build_simulation(const Scene& scene, Extras extras) {
   const SceneConfig& c = scene.config;
+  if (c.array)
+    throw InputError("a scene with [array] is no single jet: build_array_simulation");
   const std::shared_ptr<const InflowRule> inflow = build_inflow(c);
-  auto dynamics = compose_dynamics(scene, inflow);
+  auto dynamics = compose_dynamics(scene, inflow, build_coulomb(scene));
   for (auto& force : extras.forces) dynamics->add(std::move(force));
   const auto table = bead_table(scene, *dynamics);
   auto integrator = make_integrator(c.integrator.method, error_scale(scene, *table));
-  StepLimits limits{.fixed = c.integrator.step,
-                    .initial = c.integrator.initial_step,
-                    .longest = c.integrator.max_step.value_or(StepLimits{}.longest),
-                    .shortest = c.integrator.min_step,
-                    .shortest_link = shortest_link(scene)};
+  const StepLimits limits = step_limits(scene);
   if (c.integrator.method == "two-rate" && !extras.forces.empty())
     throw InputError(
         "integrator.method = \"two-rate\" cannot be used with force terms that a "
@@ -484,27 +534,35 @@ std::unique_ptr<Simulation> build_simulation(const Scene& scene, Extras extras) 
   if (c.integrator.events == EventPlacement::step_end)
     simulation->snap_events_to_step_ends();
 
-  // The order in which events at the same instant are applied (model 5).
-  const bool first_is_free =
-      c.chain && c.chain->fixed != FixedEnds::first && c.chain->fixed != FixedEnds::both;
-  // With fixed steps, for studies of convergence, every landing ends a step.
-  const bool may_pass = c.integrator.rtol.has_value()
-                        && c.integrator.events == EventPlacement::located
-                        && c.integrator.landings == LandingSteps::automatic;
-  if (c.collector)
-    simulation->add(std::make_unique<Landing>(
-        plate_of(*c.collector),
-        Landing::Options{.first_bead = first_is_free ? std::size_t{0} : std::size_t{1},
-                         .may_pass = may_pass,
-                         .charges_mat = c.collector->charge == CollectorCharge::kept_on_mat,
-                         .decay_time = c.collector->decay_time}));
-  if (inflow)
-    for (auto& event : inflow->events()) simulation->add(std::move(event));
-  if (c.field && c.field->frequency)
-    simulation->add(std::make_unique<FieldSwitch>(*c.field->frequency));
-  if (c.refinement) simulation->add(build_refinement(c, simulation->dynamics()));
+  for (auto& event : build_events(c, inflow.get(), simulation->dynamics(), 1))
+    simulation->add(std::move(event));
   for (auto& event : extras.events) simulation->add(std::move(event));
   for (auto& observer : extras.observers) simulation->add(std::move(observer));
+  return simulation;
+}
+
+std::unique_ptr<ArraySimulation> build_array_simulation(const Scene& scene) {
+  EHDJET_EXPECTS(scene.config.array && scene.config.nozzle && scene.config.coulomb);
+  const ArrayConfig& array = *scene.config.array;
+  auto dynamics = std::make_unique<ArrayDynamics>(build_solver(scene));
+  std::vector<ArraySimulation::Member> members;
+  std::shared_ptr<const BeadTable> table;
+  for (std::size_t j = 0; j < array.jets(); ++j) {
+    SceneConfig c = scene.config;
+    c.nozzle->phase += array.phase(j);
+    const std::shared_ptr<const InflowRule> inflow = build_inflow(c);
+    const auto coulomb = std::make_shared<SharedCoulomb>();
+    auto jet = compose_dynamics(scene, inflow, coulomb);
+    if (!table) table = bead_table(scene, *jet);
+    members.push_back({.jet = inflow->start(table),
+                       .events = build_events(c, inflow.get(), *jet, array.jets())});
+    dynamics->add(std::move(jet), coulomb, array.axis(j));
+  }
+  const IntegratorConfig& i = scene.config.integrator;
+  auto simulation = std::make_unique<ArraySimulation>(
+      std::move(members), std::move(dynamics),
+      make_integrator(i.method, error_scale(scene, *table)), step_limits(scene));
+  if (i.events == EventPlacement::step_end) simulation->snap_events_to_step_ends();
   return simulation;
 }
 

@@ -3,21 +3,17 @@
 #include "ehdjet/core/error.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <fmt/format.h>
 #include <string_view>
 #include <utility>
 
+#include "steps.hpp"
+
 namespace ehdjet {
 namespace {
 
 constexpr std::string_view two_rates = "two-rate"; // as a method
-
-constexpr double never = std::numeric_limits<double>::infinity();
-
-// An expected event lies inside the step that aims at it, not just behind its end.
-constexpr double aim_beyond = 1.02;
 
 /// Asks the dynamics for the cause when for the first time a rate is not a number.
 class FirstNan final : public OdeSystem {
@@ -45,26 +41,8 @@ private:
   std::size_t beads_;
 };
 
-// Who cannot write knows what failed, but not when.
-template <class Write>
-void at_time(double t, const Write& write) {
-  try {
-    write();
-  } catch (const RunError& e) {
-    throw RunError(fmt::format("at t = {:.9g} s: {}", t, e.what()));
-  }
-}
-
 void show(Observer& observer, const JetSnapshot& snapshot) {
   at_time(snapshot.time, [&] { observer.observe(snapshot); });
-}
-
-/// Smallest |d0 + s (d1 - d0)|^2 for s from 0 to 1.
-double closest_approach(const Vec3& d0, const Vec3& d1) {
-  const Vec3 e = d1 - d0;
-  const double square = e.squaredNorm();
-  const double s = square > 0 ? std::clamp(-d0.dot(e) / square, 0.0, 1.0) : 0.0;
-  return (d0 + s * e).squaredNorm();
 }
 
 /// Beads at the end of a chain have left it. Within a macro step they are so many that a ledger that waits
@@ -92,16 +70,6 @@ private:
   Simulation::StepHook hook_;
 };
 
-class WallClock {
-public:
-  [[nodiscard]] double seconds() const {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-  }
-
-private:
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
-
 } // namespace
 
 Simulation::Simulation(JetState jet, std::unique_ptr<JetDynamics> dynamics,
@@ -114,12 +82,7 @@ Simulation::Simulation(JetState jet, std::unique_ptr<JetDynamics> dynamics,
     , checks_coulomb_(dynamics_->checks().has_value())
     , time_(jet_.time) {
   EHDJET_EXPECTS(limits_.fixed || integrator_->error_order() > 0);
-  for (std::size_t k = 1; k < jet_.beads(); ++k) {
-    ++ledger_.inserted_beads;
-    ledger_.inserted_mass += jet_.mass[k];
-    ledger_.inserted_charge += jet_.charge[k];
-    ledger_.inserted_volume += jet_.volume[k];
-  }
+  ledger_ = ledger_at_start(jet_);
   if (integrator_->method_in_use() != integrator_->name())
     statistics_.method =
         MethodRecord{.in_use = integrator_->method_in_use(), .since = jet_.time};
@@ -175,7 +138,7 @@ void Simulation::advance(double h, double end_time) {
 
 void Simulation::advance(const DenseStep& step, double end_time) {
   const double h = step.h;
-  const auto found = events_located_ ? first_event(step) : std::nullopt;
+  const auto found = events_located_ ? first_event(events_, step) : std::nullopt;
   const double theta = found ? found->theta : 1.0;
   CompensatedSum next_time = time_;
   next_time += theta * h;
@@ -188,7 +151,7 @@ void Simulation::advance(const DenseStep& step, double end_time) {
   show_until(step, t1);
   for (Observer* o : step_observers_) o->end_step(t1, theta);
   const bool foresees = !found && events_located_ && step.keeps_chain();
-  expected_event_ = foresees ? expected_time(step) : never;
+  expected_event_ = foresees ? expected_time(events_, step) : never;
 
   if (found) {
     stop_at(step, theta);
@@ -198,7 +161,7 @@ void Simulation::advance(const DenseStep& step, double end_time) {
   time_ = next_time;
   jet_.time = t1;
   dynamics_->prescribe(jet_.time, jet_.y);
-  if (dynamics_->feeds()) feed(jet_, ledger_);
+  if (dynamics_->feeds()) feed(*dynamics_, jet_, ledger_);
   if (found)
     for (std::size_t i = 0; i < events_.size(); ++i)
       if (i != found->index) events_[i]->overtaken(t1);
@@ -212,8 +175,7 @@ void Simulation::run_until(double end_time) {
   while (jet_.time < end_time) {
     const double to_end = end_time - jet_.time;
     const double wanted = choose_step(end_time);
-    const bool last =
-        wanted >= (1 - 1e-9) * to_end; // leaves no remainder of round-off size
+    const bool last = wanted >= nearly * to_end;
     cut |= last;
     // How short the last step of a short run is says nothing about the next run.
     uncut_ = last && limits_.even_at_end ? wanted : 0;
@@ -230,14 +192,7 @@ void Simulation::run_until(double end_time) {
 void Simulation::make_checkpoints(double interval) {
   EHDJET_EXPECTS(interval > 0);
   checkpoint_interval_ = interval;
-  checkpoint_due_ = next_checkpoint();
-}
-
-// Follows from the time alone, also in a run that goes on from a checkpoint.
-double Simulation::next_checkpoint() const {
-  double count = std::floor(jet_.time / checkpoint_interval_);
-  while (count * checkpoint_interval_ <= jet_.time) ++count;
-  return count * checkpoint_interval_;
+  checkpoint_due_ = next_multiple(checkpoint_interval_, jet_.time);
 }
 
 void Simulation::make_checkpoint() {
@@ -245,7 +200,7 @@ void Simulation::make_checkpoint() {
   if (two_rate_) two_rate_->forget();
   Checkpoint checkpoint;
   archive(Archive::into(checkpoint));
-  checkpoint_due_ = next_checkpoint();
+  checkpoint_due_ = next_multiple(checkpoint_interval_, jet_.time);
   at_time(jet_.time, [&] {
     for (const auto& o : observers_) o->checkpoint(checkpoint);
   });
@@ -260,7 +215,8 @@ void Simulation::restore(const Checkpoint& checkpoint) {
     statistics_.method->in_use = two_rates_ ? two_rates : integrator_->method_in_use();
   restored_at_ = jet_.time;
   for (const auto& o : observers_) o->skip_to(restored_at_);
-  if (checkpoint_interval_ > 0) checkpoint_due_ = next_checkpoint();
+  if (checkpoint_interval_ > 0)
+    checkpoint_due_ = next_multiple(checkpoint_interval_, jet_.time);
   dynamics_->bind(jet_);
   integrator_->restart();
 }
@@ -403,63 +359,12 @@ void Simulation::note_method() {
   record.in_use = now, record.since = jet_.time;
 }
 
-/// A bead that runs into its upstream neighbour in the step just attempted, between whose ends
-/// beads are taken to fly straight. Those that rest or have passed the collector do not count.
 std::optional<std::size_t> Simulation::vanishing_link() const {
-  const double limit = limits_.shortest_link * limits_.shortest_link;
-  if (limit == 0) return std::nullopt;
-  const std::size_t n = jet_.beads();
-  const auto before = jet_.columns().position();
-  const auto after = JetColumns<const double>{stepping().end_state(), n}.position();
-  for (std::size_t k = jet_.first(), up = 0; k < n; up = k++) {
-    if (closest_approach(before[k] - before[up], after[k] - after[up]) >= limit) continue;
-    if (jet_.is_landed(k) && jet_.is_landed(up)) continue;
-    if (jet_.absorbing_plane && after.x[up] > *jet_.absorbing_plane) continue;
-    return k;
-  }
-  return std::nullopt;
+  return ehdjet::vanishing_link(jet_, stepping().end_state(), limits_.shortest_link);
 }
 
 void Simulation::fail_at_link(double h, std::size_t bead) {
-  const std::size_t up = bead == jet_.first() ? 0 : bead - 1;
-  throw RunError(
-      fmt::format("at t = {:.9g} s (step {:.3g} s) bead {} runs into bead {}: their link, "
-                  "{:.3g} m long, shrinks "
-                  "below {:.3g} m; {}. A chain cannot pass through itself: look for what "
-                  "pushes the beads "
-                  "together, raise viscoelasticity.elastic_modulus or viscosity, or let "
-                  "refinement.coarsen join short links in time",
-                  jet_.time, h, bead, up, link_length(jet_, bead), limits_.shortest_link,
-                  dynamics_->diagnosis(jet_.time, jet_.y, bead)));
-}
-
-/// Brings what bead 1 carries to the time of the jet.
-void Simulation::feed(JetState& jet, Ledger& ledger) const {
-  const LinkContent full{
-      .volume = jet.volume[1], .mass = jet.mass[1], .charge = jet.charge[1]};
-  const LinkContent now = dynamics_->constraints().inflow->acting(
-      full, jet.fed_since, jet.time, std::as_const(jet).columns().position());
-  jet.volume[1] = now.volume, jet.mass[1] = now.mass, jet.charge[1] = now.charge;
-  ledger.inserted_volume += now.volume - full.volume;
-  ledger.inserted_mass += now.mass - full.mass;
-  ledger.inserted_charge += now.charge - full.charge;
-}
-
-std::optional<Simulation::FoundEvent> Simulation::first_event(const DenseStep& step) {
-  std::optional<FoundEvent> first;
-  for (std::size_t i = 0; i < events_.size(); ++i) {
-    const auto theta = events_[i]->locate(step);
-    if (theta && (!first || *theta < first->theta)) first = {i, *theta};
-  }
-  return first;
-}
-
-double Simulation::expected_time(const DenseStep& step) const {
-  double earliest = never;
-  for (const auto& e : events_)
-    if (const auto theta = e->predict(step))
-      earliest = std::min(earliest, step.time(*theta));
-  return earliest;
+  throw RunError(vanishing_text(jet_, *dynamics_, h, bead, limits_.shortest_link));
 }
 
 void Simulation::show_until(const DenseStep& step, double end) {
@@ -475,7 +380,7 @@ void Simulation::show_until(const DenseStep& step, double end) {
         step.ledger_at(t, ledger);
         if (step.keeps_chain()) dynamics_->prescribe(t, seen.y);
         seen.time = t;
-        if (dynamics_->feeds()) feed(seen, ledger);
+        if (dynamics_->feeds()) feed(*dynamics_, seen, ledger);
         const auto chain = step.keeps_chain() ? std::nullopt : std::optional(seen);
         for (const auto& e : events_) e->anticipate(t, seen);
         if (chain) count_removed(*chain, seen.beads(), ledger);

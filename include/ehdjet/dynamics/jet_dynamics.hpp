@@ -56,6 +56,8 @@ public:
   /// Other entries of `rate` get anything.
   void evaluate(double t, std::span<const double> y, std::span<double> rate,
                 BeadRange targets, BeadRange sources);
+  /// The chain as the terms would see it in that state, valid until the next call. y must outlive it.
+  const Stage& stage_at(double t, std::span<const double> y) { return chain_.at(t, y); }
   /// All but beads that have passed the collector and fly on, and the four above the first of them. The
   /// motion of those four has a kink, and that of the passed ones does not matter any more.
   [[nodiscard]] std::size_t judged_rows(std::span<const double> end) const override;

@@ -102,4 +102,30 @@ private:
   OdeSystem& system_;
 };
 
+/// What the step of several jets together is for one of them: its rows of the common columns.
+class RowsOfStep final : public DenseStep {
+public:
+  /// `all_rows`: how many rows each column of the integrator's state has.
+  RowsOfStep(double start, double length, const JetState& chain, Integrator& integrator,
+             OdeSystem& system, std::size_t first_row, std::size_t all_rows)
+      : DenseStep(start, length, chain)
+      , integrator_(integrator)
+      , system_(system)
+      , first_(first_row)
+      , all_(all_rows) {}
+
+  [[nodiscard]] std::span<const double> end_x() const override {
+    return integrator_.end_state().subspan(first_, jet.beads());
+  }
+  void state(double theta, std::span<double> out) const override;
+
+private:
+  [[nodiscard]] double component(double theta, std::size_t index) const override;
+  void read(double theta, std::size_t index, std::span<double> out) const;
+
+  Integrator& integrator_;
+  OdeSystem& system_;
+  std::size_t first_, all_;
+};
+
 } // namespace ehdjet

@@ -31,6 +31,8 @@ public:
     bool may_pass = false;                 ///< steps need not end at frequent landings
     bool charges_mat = false;              ///< charges stay on the collector (model 5.2)
     std::optional<double> decay_time = {}; ///< of those charges [s]
+    /// So many jets take common steps, each of which would end at a landing of any of them.
+    std::size_t jets = 1;
   };
   Landing(const Plate& plate, const Options& options)
       : plate_(plate)
@@ -86,6 +88,7 @@ private:
   bool only_passed_ = false;       // those that landed last
   std::vector<Arrival> passing_;   // beads that do not, in the order of their landing
   double steps_per_landing_ = 100; // recent average
+  double jets_ = 1;                // that share steps
   std::uint64_t last_step_ = 0;
 };
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "ehdjet/observers/array_observer.hpp"
 #include "ehdjet/observers/observer.hpp"
 #include "ehdjet/run_files/run_file.hpp"
 
@@ -35,5 +36,17 @@ std::unique_ptr<Observer> record_resolving_power(std::shared_ptr<RunFile> file,
                                                  double interval, double link_length);
 /// The last checkpoint.
 std::unique_ptr<Observer> record_checkpoints(std::shared_ptr<RunFile> file);
+
+/// The same parts of a run with an array of jets. Beads, deposited beads and refinements have a column
+/// `jet`; a row of observables has sums, means and largest values over the jets.
+std::unique_ptr<ArrayObserver> record_array_observables(std::shared_ptr<RunFile> file,
+                                                        double interval,
+                                                        bool coulomb_error);
+std::unique_ptr<ArrayObserver> record_array_frames(std::shared_ptr<RunFile> file,
+                                                   double interval, const BeadTable& table);
+std::unique_ptr<ArrayObserver> record_array_deposit(std::shared_ptr<RunFile> file,
+                                                    std::shared_ptr<const BeadTable> table);
+std::unique_ptr<ArrayObserver> record_array_refinements(std::shared_ptr<RunFile> file);
+std::unique_ptr<ArrayObserver> record_array_checkpoints(std::shared_ptr<RunFile> file);
 
 } // namespace ehdjet

@@ -3,6 +3,7 @@
 #include "ehdjet/coulomb/make_solver.hpp"
 #include "ehdjet/forces/air_drag.hpp"
 #include "ehdjet/forces/evaporation.hpp"
+#include "ehdjet/jet/jet_axis.hpp"
 #include "ehdjet/refinement/refine_jet.hpp"
 
 #include <array>
@@ -39,6 +40,8 @@ enum class FieldWaveform { constant, square, rc };
 enum class InflowKind { embryo, pump };
 /// What the charge of a bead does once it rests on the collector (model 5).
 enum class CollectorCharge { grounded, kept, kept_on_mat };
+/// How the nozzles of an array move: all alike, or with phases spread over a turn (model 9).
+enum class ArrayPhases { equal, spread };
 /// What is added to the forces between the beads so that they act like a thread (model 3.1).
 enum class NearFieldForm { point, free_surface, fixed };
 /// How links that have become too long are refined (model 7).
@@ -81,6 +84,20 @@ struct NozzleConfig {
   [[nodiscard]] double section() const;              ///< A0 = pi a0^2 [m^2]
   [[nodiscard]] double fluid_velocity() const;       ///< v_s, or Q/A0 of a pump [m/s]
   [[nodiscard]] double fluid_charge_density() const; ///< rho_q, or I/Q [C/m^3]
+};
+
+/// Several jets from equal nozzles on a grid in the plane x = 0 (model 9). Needs `NozzleConfig`.
+struct ArrayConfig {
+  std::size_t rows = 1, columns = 1; ///< along z and along y
+  double spacing = 0;                ///< between neighbouring nozzles [m]
+  ArrayPhases phases = ArrayPhases::equal;
+  bool operator==(const ArrayConfig&) const = default;
+
+  [[nodiscard]] std::size_t jets() const { return rows * columns; }
+  /// Jet j = row columns + column. The grid is centred on the axis.
+  [[nodiscard]] JetAxis axis(std::size_t j) const;
+  /// What is added to the phase of its nozzle [rad].
+  [[nodiscard]] double phase(std::size_t j) const;
 };
 
 /// The jet is a given chain of beads; nothing is inserted. Excludes `NozzleConfig`.
@@ -263,6 +280,7 @@ struct SceneConfig {
   std::string title;
   RunConfig run;
   std::optional<NozzleConfig> nozzle;
+  std::optional<ArrayConfig> array;
   std::optional<ChainConfig> chain;
   std::optional<CollectorConfig> collector;
   std::optional<FieldConfig> field;

@@ -78,6 +78,8 @@ inline constexpr Choices<SurfaceTensionForm, 2> surface_tension_forms{
     {{"paper", SurfaceTensionForm::paper}, {"line", SurfaceTensionForm::line}}};
 inline constexpr Choices<InflowKind, 2> inflow_kinds{
     {{"embryo", InflowKind::embryo}, {"pump", InflowKind::pump}}};
+inline constexpr Choices<ArrayPhases, 2> array_phases{
+    {{"equal", ArrayPhases::equal}, {"spread", ArrayPhases::spread}}};
 inline constexpr Choices<CollectorCharge, 3> collector_charges{
     {{"grounded", CollectorCharge::grounded},
      {"kept", CollectorCharge::kept},
@@ -208,6 +210,18 @@ void describe(V& v, NozzleConfig& c) {
              "conductivity of a pumped fluid; `ehdjet check` says how thick a jet is where "
              "conduction ends. A run does not use it",
              "`ehdjet check` says nothing about it");
+}
+
+template <class V>
+void describe(V& v, ArrayConfig& c) {
+  v.required("rows", c.rows, between("-", 1, 1000), "number of nozzles along z");
+  v.required("columns", c.columns, between("-", 1, 1000), "number of nozzles along y");
+  v.required("spacing", c.spacing, positive("m", 10),
+             "distance between neighbouring nozzles");
+  v.optional(
+      "phases", c.phases, array_phases,
+      "the nozzles move alike, or with phases that are spread over a turn, jet after "
+      "jet");
 }
 
 template <class V>
@@ -501,6 +515,9 @@ void describe(V& v, SceneConfig& c) {
   v.table(
       "nozzle", c.nozzle,
       "The jet is born at a nozzle at the origin. Exactly one of [nozzle] and [chain].");
+  v.table("array", c.array,
+          "Several jets from equal nozzles on a grid around the axis, which repel each "
+          "other. Needs [nozzle] and [coulomb].");
   v.table("chain", c.chain,
           "The jet is a given chain of beads; none is inserted. Excludes [nozzle].");
   v.table("collector", c.collector, "Conducting plane x = distance, where beads land.");

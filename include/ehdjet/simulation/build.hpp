@@ -4,6 +4,7 @@
 #include "ehdjet/integrators/error_scale.hpp"
 #include "ehdjet/scene/config.hpp"
 #include "ehdjet/scene/read_scene.hpp"
+#include "ehdjet/simulation/array_simulation.hpp"
 #include "ehdjet/simulation/simulation.hpp"
 
 #include <memory>
@@ -23,10 +24,13 @@ struct Extras {
 /// presence is structure: a term, event or column that the scene does not name does not exist.
 /// What writes files is added by `run_scene` (runs/run_scene.hpp).
 ///
-/// errors : InputError for names that no solver or method has
+/// errors : InputError for names that no solver or method has, and for a scene with [array]
 std::unique_ptr<Simulation> build_simulation(const Scene& scene, Extras extras = {});
 
-/// The right-hand side alone.
+/// The same of a scene with [array].
+std::unique_ptr<ArraySimulation> build_array_simulation(const Scene& scene);
+
+/// The right-hand side alone, of a single jet.
 std::unique_ptr<JetDynamics> build_dynamics(const Scene& scene);
 
 /// What a scene asks of the Coulomb solver.

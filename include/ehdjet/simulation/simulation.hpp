@@ -7,6 +7,7 @@
 #include "ehdjet/integrators/integrator.hpp"
 #include "ehdjet/integrators/step_size_control.hpp"
 #include "ehdjet/observers/observer.hpp"
+#include "ehdjet/simulation/step_limits.hpp"
 #include "ehdjet/simulation/two_rate.hpp"
 
 #include <functional>
@@ -17,21 +18,6 @@
 #include <vector>
 
 namespace ehdjet {
-
-/// How long a step may be.
-struct StepLimits {
-  std::optional<double>
-      fixed; ///< dt of every step, for methods without error estimate too [s]
-  std::optional<double> initial;                            ///< first attempt [s]
-  double longest = std::numeric_limits<double>::infinity(); ///< [s]
-  double shortest = 1e-15; ///< below this the run stops [s]
-  /// A step in which a link becomes shorter than this is too long, and if no step is short
-  /// enough, the run stops; 0: links may vanish [m].
-  double shortest_link = 0;
-  /// The last two steps before the end of a run are equally long, and the step after it does not
-  /// depend on how short they were: for many short runs one after the other.
-  bool even_at_end = false;
-};
 
 /// A jet, what moves it, what happens to it and who watches.
 ///
@@ -84,11 +70,6 @@ public:
   [[nodiscard]] std::span<const std::unique_ptr<Event>> events() const { return events_; }
 
 private:
-  struct FoundEvent {
-    std::size_t index;
-    double theta;
-  };
-
   void choose_rates();
   double choose_step(double end_time);
   [[nodiscard]] double even_macro_step(double h) const;
@@ -102,16 +83,12 @@ private:
   void note_method();
   [[nodiscard]] std::optional<std::size_t> vanishing_link() const;
   [[noreturn]] void fail_at_link(double h, std::size_t bead);
-  std::optional<FoundEvent> first_event(const DenseStep& step);
-  [[nodiscard]] double expected_time(const DenseStep& step) const;
   void show_until(const DenseStep& step, double end);
   void stop_at(const DenseStep& step, double theta);
-  void feed(JetState& jet, Ledger& ledger) const;
   void apply_events(std::size_t located);
   void apply(Event& event, EventContext& context);
   void archive(const Archive& a);
   void make_checkpoint();
-  [[nodiscard]] double next_checkpoint() const;
   [[nodiscard]] JetSnapshot now() const;
   [[noreturn]] void fail(double h, const char* why);
 
