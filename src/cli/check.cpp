@@ -25,7 +25,11 @@ void add_check_command(CLI::App& app) {
     }
     if (scene->empty()) throw CLI::RequiredError("SCENE");
     const Scene read = options->read();
-    build_simulation(read); // finds errors that only appear when the objects are built
+    // Finds errors that only appear when the objects are built.
+    if (read.config.array)
+      build_array_simulation(read);
+    else
+      build_simulation(read);
     fmt::print("{}", scene_report(read));
   });
 }

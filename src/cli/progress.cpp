@@ -30,11 +30,18 @@ Progress::Progress(double start_time, double end_time)
     , next_(interval_) {}
 
 void Progress::show(const Simulation& simulation) {
+  show(simulation.jet().time, simulation.jet().links(), simulation.statistics());
+}
+
+void Progress::show(const ArraySimulation& simulation) {
+  show(simulation.time(), simulation.links(), simulation.statistics());
+}
+
+void Progress::show(double t, std::size_t beads, const RunStatistics& statistics) {
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start_;
   const double wall = elapsed.count();
   if (wall < next_) return;
   next_ = wall + interval_;
-  const double t = simulation.jet().time;
   recent_.push_back({wall, t});
   if (recent_.size() > samples) recent_.pop_front();
   const Sample first = recent_.size() > 1 ? recent_.front() : Sample{0, start_time_};
@@ -43,8 +50,8 @@ void Progress::show(const Simulation& simulation) {
   const double part = t / end_time_;
   const std::string line = fmt::format(
       "{:3.0f} %  t = {:.4g} of {:.4g} s  {} beads  {} evaluations  {} elapsed, {} left",
-      100 * part, t, end_time_, simulation.jet().links(),
-      simulation.statistics().evaluations, duration(wall), duration(left));
+      100 * part, t, end_time_, beads, statistics.evaluations, duration(wall),
+      duration(left));
   if (!terminal_) {
     fmt::print(stderr, "{}\n", line);
     return;

@@ -1,8 +1,10 @@
 #pragma once
 
+#include "ehdjet/simulation/array_simulation.hpp"
 #include "ehdjet/simulation/simulation.hpp"
 
 #include <chrono>
+#include <cstddef>
 #include <deque>
 
 namespace ehdjet::cli {
@@ -16,8 +18,11 @@ public:
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
   void show(const Simulation& simulation);
+  void show(const ArraySimulation& simulation);
 
 private:
+  void show(double t, std::size_t beads, const RunStatistics& statistics);
+
   struct Sample {
     double wall, time; // [s], [s]
   };

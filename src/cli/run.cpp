@@ -2,10 +2,12 @@
 #include "ehdjet/runs/run_scene.hpp"
 #include "ehdjet/scene/scene_report.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fmt/format.h>
 #include <memory>
+#include <vector>
 
 #include "commands.hpp"
 #include "interrupt.hpp"
@@ -23,34 +25,72 @@ struct Options {
   bool quiet = false, force = false;
 };
 
+double time_of(const Simulation& s) {
+  return s.jet().time;
+}
+double time_of(const ArraySimulation& s) {
+  return s.time();
+}
+
 /// Prints a message when a check finds an error of the Coulomb force above the tolerance.
-void report_violations(Simulation& simulation, double tolerance) {
+template <class S>
+void report_violations(S& simulation, double tolerance) {
   auto reported = simulation.statistics().coulomb_violations;
-  simulation.after_each_step([=](const Simulation& s) mutable {
+  simulation.after_each_step([=](const S& s) mutable {
     const RunStatistics& statistics = s.statistics();
     if (statistics.coulomb_violations == reported) return;
     reported = statistics.coulomb_violations;
     fmt::print(stderr,
                "\nat t = {:.9g} s the error of the Coulomb force was {:.2g}, more than the "
                "tolerance {:g}; the solver is stricter from now on\n",
-               s.jet().time, *statistics.coulomb_error, tolerance);
+               time_of(s), *statistics.coulomb_error, tolerance);
   });
+}
+
+/// Where a jet has got to.
+struct Reach {
+  explicit Reach(const JetState& jet)
+      : tip(jet.columns().position()[jet.links()])
+      , off_axis(std::hypot(tip.y(), tip.z())) {
+    const auto r = jet.columns().position();
+    for (std::size_t k = 1; k < jet.beads(); ++k) path += (r[k] - r[k - 1]).norm();
+  }
+  Vec3 tip;
+  double off_axis, path = 0; // [m]
+};
+
+std::string reach_text(const JetState& jet) {
+  const Reach reach(jet);
+  return fmt::format("  beads         {}\n"
+                     "  tip           x = {:.6g} cm, {:.6g} cm off the axis\n"
+                     "  path length   {:.6g} cm\n",
+                     jet.links(), 100 * reach.tip.x(), 100 * reach.off_axis,
+                     100 * reach.path);
+}
+
+std::string reach_text(const std::vector<JetState>& jets) {
+  std::size_t links = 0;
+  std::vector<double> off_axis, path;
+  for (const JetState& jet : jets) {
+    const Reach reach(jet);
+    links += jet.links();
+    off_axis.push_back(100 * reach.off_axis), path.push_back(100 * reach.path);
+  }
+  const auto [nearest, farthest] = std::ranges::minmax(off_axis);
+  const auto [shortest, longest] = std::ranges::minmax(path);
+  return fmt::format("  jets          {}\n"
+                     "  beads         {} of all jets\n"
+                     "  tips          {:.6g} to {:.6g} cm off the axis of the array\n"
+                     "  path lengths  {:.6g} to {:.6g} cm\n",
+                     jets.size(), links, nearest, farthest, shortest, longest);
 }
 
 std::string summary(const RunResult& result, const SceneConfig& scene,
                     const std::filesystem::path& file) {
-  const JetState& jet = result.jet;
-  const auto r = jet.columns().position();
-  const Vec3 tip = r[jet.links()];
-  double path = 0;
-  for (std::size_t k = 1; k < jet.beads(); ++k) path += (r[k] - r[k - 1]).norm();
+  const double time = scene.array ? result.array.front().time : result.jet.time;
   const RunStatistics& cost = result.statistics;
-  std::string text = fmt::format("  time          {:.6g} s\n"
-                                 "  beads         {}\n"
-                                 "  tip           x = {:.6g} cm, {:.6g} cm off the axis\n"
-                                 "  path length   {:.6g} cm\n",
-                                 jet.time, jet.links(), 100 * tip.x(),
-                                 100 * std::hypot(tip.y(), tip.z()), 100 * path);
+  std::string text = fmt::format("  time          {:.6g} s\n", time)
+                     + (scene.array ? reach_text(result.array) : reach_text(result.jet));
   if (cost.landings > 0)
     text += fmt::format(
         "  collector     last bead landed with radius {:.5g} um at {:.6g} m/s\n",
@@ -60,11 +100,11 @@ std::string summary(const RunResult& result, const SceneConfig& scene,
                         cost.insertions, cost.releases, cost.landings);
   if (cost.refinements)
     text += fmt::format("  refinements   {} that changed the mesh\n", *cost.refinements);
-  if (scene.nozzle && jet.time > 0) {
-    const double flow = result.ledger.inserted_volume / jet.time;
+  if (scene.nozzle && time > 0) {
+    const double flow = result.ledger.inserted_volume / time;
     text += fmt::format(
         "  inflow        {:.4g} m^3/s ({:.4g} mL/h), {:.4g} A, means since t = 0\n", flow,
-        3.6e9 * flow, result.ledger.inserted_charge / jet.time);
+        3.6e9 * flow, result.ledger.inserted_charge / time);
   }
   if (result.tension)
     text +=
@@ -106,20 +146,21 @@ void run(const Options& options) {
   run.scene_file = options.scene.scene, run.provenance = environment();
   run.interrupted = InterruptGuard::signal_name;
   if (!options.continued.empty()) run.continue_from = options.continued;
-  run.started = [&](Simulation& simulation) {
+  const auto started = [&](auto& simulation) {
     interrupt.emplace();
     if (options.quiet) return;
     const SceneConfig& c = config;
     for (const std::string& warning : near_field_warnings(c))
       fmt::print(stderr, "warning: {}\n", warning);
-    const double start = simulation.jet().time, end = c.run.end_time;
+    const double start = time_of(simulation), end = c.run.end_time;
     fmt::print(stderr, "{}{}simulating {:.6g} s into {}\n", c.title,
                c.title.empty() ? "" : "\n", end - start, path.string());
     if (c.coulomb && c.coulomb->check_every)
       report_violations(simulation, c.coulomb->tolerance);
     progress.emplace(start, end);
-    simulation.after_each_step([&](const Simulation& s) { progress->show(s); });
+    simulation.after_each_step([&](const auto& s) { progress->show(s); });
   };
+  run.started = started, run.array_started = started;
   const RunResult result = run_scene(std::move(scene), path, std::move(run));
   progress.reset();
   if (result.status == "interrupted")

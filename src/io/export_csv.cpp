@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
 #include <numbers>
-#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -40,13 +40,25 @@ RunTable in_order(RunTable table, const List& list) {
   return table;
 }
 
+// Of the fibre of each jet.
 std::vector<double> arc_length(const RunTable& deposit) {
   const auto &volume = deposit["volume"], &radius = deposit["radius"];
+  const RunTable::Column* jet = deposit.find("jet");
   std::vector<double> lengths(deposit.rows());
-  double end = 0;
+  std::map<double, double> end;
   for (std::size_t k = 0; k < deposit.rows(); ++k)
-    lengths[k] = end += volume[k] / (std::numbers::pi * radius[k] * radius[k]);
+    lengths[k] = end[jet != nullptr ? jet->values[k] : 0] +=
+        volume[k] / (std::numbers::pi * radius[k] * radius[k]);
   return lengths;
+}
+
+// Every jet counts its beads from its nozzle on.
+std::vector<double> bead_numbers(const Frame& frame) {
+  std::vector<double> numbers;
+  for (const BeadRange& jet : jets_of(frame))
+    for (std::size_t k = jet.begin; k < jet.end; ++k)
+      numbers.push_back(static_cast<double>(k - jet.begin));
+  return numbers;
 }
 
 } // namespace
@@ -64,9 +76,7 @@ void export_table(const RunReader& run, const std::string& part, TextOutput& out
 
 void export_beads(const RunReader& run, std::optional<double> time, TextOutput& output) {
   const Frame frame = run.frame(run.nearest_frame(time));
-  std::vector<double> numbers(frame.rows());
-  std::iota(numbers.begin(), numbers.end(), 0.0);
-  RunTable table{{{"bead", "1", std::move(numbers)}}};
+  RunTable table{{{"bead", "1", bead_numbers(frame)}}};
   for (const FrameColumn& c : frame_columns(*exported_table()))
     table.columns.push_back({c.name, c.unit, column_or_zeros(frame, c.name)});
   for (RunTable::Column& c : further_columns(frame)) table.columns.push_back(std::move(c));

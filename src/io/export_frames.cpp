@@ -16,10 +16,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
-char species(const Frame& frame, std::size_t bead) {
-  if (bead == 0) return 'N';
-  if (frame["embryo"][bead] != 0) return 'E';
-  return frame["landed"][bead] != 0 ? 'L' : 'B';
+/// Of each bead.
+std::string species(const Frame& frame) {
+  const auto &embryo = frame["embryo"], &landed = frame["landed"];
+  std::string all(frame.rows(), 'B');
+  for (std::size_t k = 0; k < all.size(); ++k)
+    if (embryo[k] != 0)
+      all[k] = 'E';
+    else if (landed[k] != 0)
+      all[k] = 'L';
+  for (const BeadRange& jet : jets_of(frame)) all[jet.begin] = 'N';
+  return all;
 }
 
 void print_xyz(const Frame& frame, TextOutput& output) {
@@ -35,8 +42,9 @@ void print_xyz(const Frame& frame, TextOutput& output) {
       "{}\nProperties=species:S:1:pos:R:3:velo:R:3:radius:R:1:stress:R:1:charge:R:1{} "
       "Time={:.17g} Units=\"s m m/s m Pa C{}\"\n",
       frame.rows(), properties, frame.time, units);
+  const std::string kinds = species(frame);
   for (std::size_t k = 0; k < frame.rows(); ++k) {
-    output.print("{}", species(frame, k));
+    output.print("{}", kinds[k]);
     for (const auto& column : columns) output.print(" {:.17g}", column[k]);
     output.print("\n");
   }
@@ -84,18 +92,21 @@ std::vector<double> vectors(const Frame& frame, const char* x, const char* y,
   return all;
 }
 
-void print_poly_line(const Frame& frame, TextOutput& output) {
-  std::vector<std::int64_t> connectivity(frame.rows());
+/// One poly-line per jet.
+void print_poly_lines(const Frame& frame, TextOutput& output) {
+  std::vector<std::int64_t> connectivity(frame.rows()), ends;
   std::iota(connectivity.begin(), connectivity.end(), 0);
+  for (const BeadRange& jet : jets_of(frame))
+    ends.push_back(static_cast<std::int64_t>(jet.end));
   output.print("<?xml version=\"1.0\"?>\n"
                "<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" "
                "header_type=\"UInt64\">\n<PolyData>\n<FieldData>\n");
   print_array(output, "Float64", "TimeValue", 1, std::vector<double>{frame.time});
   output.print("</FieldData>\n"
-               "<Piece NumberOfPoints=\"{}\" NumberOfVerts=\"0\" NumberOfLines=\"1\" "
+               "<Piece NumberOfPoints=\"{}\" NumberOfVerts=\"0\" NumberOfLines=\"{}\" "
                "NumberOfStrips=\"0\" NumberOfPolys=\"0\">\n"
                "<PointData Scalars=\"radius\" Vectors=\"velocity\">\n",
-               frame.rows());
+               frame.rows(), ends.size());
   print_array(output, "Float64", "radius", 1, frame["radius"]);
   print_array(output, "Float64", "stress", 1, column_or_zeros(frame, "stress"));
   print_array(output, "Float64", "velocity", 3, vectors(frame, "vx", "vy", "vz"));
@@ -106,8 +117,7 @@ void print_poly_line(const Frame& frame, TextOutput& output) {
   print_array(output, "Float64", "Points", 3, vectors(frame, "x", "y", "z"));
   output.print("</Points>\n<Lines>\n");
   print_array(output, "Int64", "connectivity", 1, connectivity);
-  print_array(output, "Int64", "offsets", 1,
-              std::vector<std::int64_t>{static_cast<std::int64_t>(frame.rows())});
+  print_array(output, "Int64", "offsets", 1, ends);
   output.print("</Lines>\n</Piece>\n</PolyData>\n</VTKFile>\n");
   output.close();
 }
@@ -164,7 +174,7 @@ void export_vtk(const RunReader& run, std::optional<double> time, const fs::path
     const Frame frame = run.frame(k);
     const std::string file = fmt::format("{}/frame_{:06}.vtp", folder, k);
     TextOutput output(pvd.parent_path() / file, overwrite);
-    print_poly_line(frame, output);
+    print_poly_lines(frame, output);
     collection.print("<DataSet timestep=\"{:.17g}\" group=\"\" part=\"0\" file=\"{}\"/>\n",
                      frame.time, escaped(file));
   }

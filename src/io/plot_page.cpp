@@ -10,6 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "record_columns.hpp"
+
 namespace ehdjet {
 namespace {
 
@@ -85,14 +87,23 @@ std::string place(const Box& box) {
                      box.left, box.right, box.bottom, box.top);
 }
 
+// Several `lines` are kept apart.
 std::string data_block(const char* name, const Values& a, const Values& b, double unit_a,
-                       double unit_b) {
+                       double unit_b, const std::vector<BeadRange>& lines) {
   constexpr std::size_t most_rows = 20000; // more than the page has pixels
   const std::size_t stride = a.size() / most_rows + 1;
   std::string block = fmt::format("${} << EOD\n", name);
-  for (std::size_t i = 0; i < a.size(); i += stride)
-    block += fmt::format("{:.7g} {:.7g}\n", a[i] / unit_a, b[i] / unit_b);
+  for (const BeadRange& line : lines) {
+    if (line.begin > 0) block += '\n';
+    for (std::size_t i = line.begin; i < line.end; i += stride)
+      block += fmt::format("{:.7g} {:.7g}\n", a[i] / unit_a, b[i] / unit_b);
+  }
   return block + "EOD\n";
+}
+
+std::string data_block(const char* name, const Values& a, const Values& b, double unit_a,
+                       double unit_b) {
+  return data_block(name, a, b, unit_a, unit_b, {{0, a.size()}});
 }
 
 std::string terminal(const std::filesystem::path& output) {
@@ -171,12 +182,18 @@ std::string views(const Frame& f, const Deposited& deposit, double bottom, doubl
   for (std::size_t k = 0; k < f.rows(); ++k)
     if (f["landed"][k] != 0)
       x.push_back(f["x"][k]), y.push_back(f["y"][k]), z.push_back(f["z"][k]);
-  std::string s =
-      data_block("side", f["x"], f["y"], m, m) + data_block("along", f["y"], f["z"], m, m)
-      + data_block("landed_side", x, y, m, m) + data_block("landed_along", y, z, m, m)
-      + data_block("deposit", deposit.y, deposit.z, m, m)
-      + data_block("nozzle_side", {f["x"][0]}, {f["y"][0]}, m, m)
-      + data_block("nozzle_along", {f["y"][0]}, {f["z"][0]}, m, m);
+  const std::vector<BeadRange> jets = jets_of(f);
+  Values nozzle_x, nozzle_y, nozzle_z;
+  for (const BeadRange& jet : jets)
+    nozzle_x.push_back(f["x"][jet.begin]), nozzle_y.push_back(f["y"][jet.begin]),
+        nozzle_z.push_back(f["z"][jet.begin]);
+  std::string s = data_block("side", f["x"], f["y"], m, m, jets)
+                  + data_block("along", f["y"], f["z"], m, m, jets)
+                  + data_block("landed_side", x, y, m, m)
+                  + data_block("landed_along", y, z, m, m)
+                  + data_block("deposit", deposit.y, deposit.z, m, m)
+                  + data_block("nozzle_side", nozzle_x, nozzle_y, m, m)
+                  + data_block("nozzle_along", nozzle_y, nozzle_z, m, m);
   const std::string jet =
       fmt::format("with linespoints lc rgb '{}' lw 1.3 pt 7 ps 0.35 notitle", blue);
   const std::string nozzle = "with points lc rgb 'black' pt 5 ps 1.1 ";

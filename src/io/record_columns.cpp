@@ -273,6 +273,17 @@ std::vector<RunTable::Column> further_columns(const Frame& frame) {
   return further;
 }
 
+std::vector<BeadRange> jets_of(const Frame& frame) {
+  const RunTable::Column* jet = frame.find("jet");
+  if (jet == nullptr) return {{0, frame.rows()}};
+  std::vector<BeadRange> jets;
+  for (std::size_t k = 0; k < frame.rows(); ++k) {
+    if (k == 0 || jet->values[k] != jet->values[k - 1]) jets.push_back({k, k});
+    jets.back().end = k + 1;
+  }
+  return jets;
+}
+
 std::vector<double> column_or_zeros(const Frame& frame, std::string_view name) {
   const RunTable::Column* found = frame.find(name);
   return found != nullptr ? found->values : std::vector<double>(frame.rows());

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "ehdjet/jet/bead_range.hpp"
 #include "ehdjet/jet/ledger.hpp"
 #include "ehdjet/observers/array_observer.hpp"
 #include "ehdjet/observers/observer.hpp"
@@ -44,6 +45,8 @@ std::vector<FrameColumn> frame_columns(const BeadTable& table);
 std::shared_ptr<const BeadTable> exported_table();
 /// The columns of a frame that are not in `frame_columns(*exported_table())`.
 std::vector<RunTable::Column> further_columns(const Frame& frame);
+/// The rows of each jet of a frame: one range, unless the run has an array.
+std::vector<BeadRange> jets_of(const Frame& frame);
 /// A column of a frame, or zeros if the frame does not have it.
 std::vector<double> column_or_zeros(const Frame& frame, std::string_view name);
 

@@ -11,6 +11,21 @@ void archive(const Archive& a, Ledger& l) {
   a("collector_radius", l.collector_radius);
 }
 
+Ledger sum_of(std::span<const Ledger> ledgers) {
+  Ledger sum;
+  for (const Ledger& l : ledgers) {
+    sum.inserted_beads += l.inserted_beads, sum.removed_beads += l.removed_beads;
+    sum.inserted_mass += l.inserted_mass, sum.removed_mass += l.removed_mass;
+    sum.inserted_charge += l.inserted_charge, sum.removed_charge += l.removed_charge;
+    sum.inserted_volume += l.inserted_volume, sum.removed_volume += l.removed_volume;
+    const double share = 1 / static_cast<double>(ledgers.size());
+    sum.release_speed += share * l.release_speed;
+    sum.impact_speed += share * l.impact_speed;
+    sum.collector_radius += share * l.collector_radius;
+  }
+  return sum;
+}
+
 void archive(const Archive& a, RunStatistics& s) {
   a("evaluations", s.evaluations), a("steps", s.steps), a("rejected", s.rejected);
   a("insertions", s.insertions), a("releases", s.releases), a("landings", s.landings);

@@ -14,6 +14,10 @@ ChainBeads read_chain_hdf5(const std::filesystem::path& file, std::optional<doub
   const FrameReader run(file);
   const std::size_t index = run.nearest_frame(time);
   Frame frame = run.frame(index);
+  if (frame.find("jet") != nullptr)
+    throw InputError(fmt::format("{} is a run with [array]: its frames have several jets, "
+                                 "and a scene can start from one chain only",
+                                 file.string()));
   ChainBeads beads;
   // What is read is moved, so that a long chain is not in memory twice.
   const RunTable::Column* marked = frame.find("embryo"); // is no bead of a chain

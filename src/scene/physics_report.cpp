@@ -124,11 +124,13 @@ std::string cost_text(const Scene& scene) {
       *c.nozzle->flow_rate / (c.nozzle->section() * c.nozzle->link_length);
   double beads = cuts_per_second * *flight;
   if (c.refinement) beads = std::max(beads, c.collector->distance / c.refinement->length);
-  std::string text =
-      fmt::format("\nCost, rough estimates\n  beads         {:.0f}, those of a straight "
-                  "jet without mutual "
-                  "repulsion{}\n",
-                  beads, c.refinement ? "; refinement of a whipping jet adds to them" : "");
+  const double jets = c.array ? static_cast<double>(c.array->jets()) : 1;
+  beads *= jets;
+  std::string text = fmt::format(
+      "\nCost, rough estimates\n  beads         {:.0f}, those of {} without mutual "
+      "repulsion{}\n",
+      beads, c.array ? "straight jets" : "a straight jet",
+      c.refinement ? "; refinement of a whipping jet adds to them" : "");
   // 38 to 78 between cuts at rtol 1e-5 (scenes/converged.toml, five lengths of links); steps of a
   // fifth-order pair get shorter with the fifth root of rtol.
   const double evaluations =
@@ -141,7 +143,7 @@ std::string cost_text(const Scene& scene) {
     const std::string_view solver =
         s.solver == "auto" ? costs.cheapest(n, s.tolerance) : std::string_view(s.solver);
     const bool two_rates =
-        c.integrator.method == "auto" || c.integrator.method == "two-rate";
+        !c.array && (c.integrator.method == "auto" || c.integrator.method == "two-rate");
     text += fmt::format("  wall time     {:.2g} s on one core{}\n",
                         evaluations * costs.cost(solver, n, s.tolerance),
                         two_rates ? " if all steps had one rate; two rates take less" : "");

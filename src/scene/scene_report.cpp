@@ -179,6 +179,13 @@ std::string jet_text(const Scene& scene) {
          "link lengths";
 }
 
+std::string array_text(const ArrayConfig& a) {
+  return fmt::format(
+      "  array: {} such jets, {} x {} nozzles at {} m, phases: {}; all charges act on each "
+      "other\n",
+      a.jets(), a.rows, a.columns, a.spacing, name_of(a.phases, array_phases));
+}
+
 std::string refinement_text(const SceneConfig& c) {
   const RefinementConfig& r = *c.refinement;
   const std::string when =
@@ -218,7 +225,9 @@ std::string run_text(const Scene& scene) {
   const SceneConfig& c = scene.config;
   const auto& i = c.integrator;
   std::string text = "\nWhat will be simulated\n";
-  text += fmt::format("  jet: {}\n  forces: {}\n", jet_text(scene), forces_text(scene));
+  text += fmt::format("  jet: {}\n", jet_text(scene));
+  if (c.array) text += array_text(*c.array);
+  text += fmt::format("  forces: {}\n", forces_text(scene));
   text += c.collector ? fmt::format("  collector: beads land at x = {} m and leave the "
                                     "chain; the charge of a landed bead {}\n",
                                     c.collector->distance, landed_charge_text(*c.collector))

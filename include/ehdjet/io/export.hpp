@@ -12,7 +12,7 @@
 namespace ehdjet {
 
 /// Writes "observables", "deposit", "refinements" or "budget" as CSV: one row per output time,
-/// deposited bead or refinement. The deposit also gets the arc length of the fibre, from the first
+/// deposited bead or refinement. The deposit also gets the arc length of each jet's fibre, from the first
 /// bead that left the chain to the end of the bead's link, with link lengths at removal.
 void export_table(const RunReader& run, const std::string& part, TextOutput& output);
 
@@ -31,7 +31,7 @@ void export_resolving_power(const RunReader& run, std::optional<double> from,
 void export_xyz(const RunReader& run, std::optional<double> time, TextOutput& output);
 
 /// Writes all frames, or the one nearest to `time`, for ParaView: the collection `pvd` and one
-/// poly-line per frame (VTK XML PolyData) in the folder <name of pvd>_vtk beside it.
+/// poly-line per frame and jet (VTK XML PolyData) in the folder <name of pvd>_vtk beside it.
 void export_vtk(const RunReader& run, std::optional<double> time,
                 const std::filesystem::path& pvd, bool overwrite);
 

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <span>
 #include <string_view>
 
 namespace ehdjet {
@@ -24,6 +25,9 @@ struct Ledger {
 };
 
 void archive(const Archive& a, Ledger& ledger);
+
+/// What has entered and left several jets; speeds and radius are means over the jets.
+[[nodiscard]] Ledger sum_of(std::span<const Ledger> ledgers);
 
 /// A bead that has left the chain: one element of the deposited fibre (model 5).
 struct DepositedBead {

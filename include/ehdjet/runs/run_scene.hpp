@@ -10,6 +10,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace ehdjet {
 
@@ -28,6 +29,8 @@ struct RunOptions {
   Extras extras;
   /// Called once, after the file has been created and before the first step.
   std::function<void(Simulation&)> started;
+  /// The same for a scene with [array].
+  std::function<void(ArraySimulation&)> array_started;
   /// Called after each step. Returns the reason to stop the run, or nullptr.
   std::function<const char*()> interrupted;
 };
@@ -36,12 +39,13 @@ struct RunOptions {
 struct RunResult {
   std::string status;  ///< "complete" or "interrupted", as in the file
   std::string message; ///< the reason and time of an interruption
-  JetState jet;
+  JetState jet;        ///< of a single jet
   RunStatistics statistics;
-  Ledger ledger;
+  Ledger ledger;              ///< of all jets of an array: see `sum_of`
   std::string coulomb_method; ///< description of the solver; empty for the direct sum
   /// At the end; only with a near field.
   std::optional<EffectiveTension::Summary> tension = {};
+  std::vector<JetState> array = {}; ///< the jets of an array, from its axis
 };
 
 /// Version, commit, compiler, instruction set and threads of this library, by name. Every run file
