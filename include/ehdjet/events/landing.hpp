@@ -88,7 +88,6 @@ private:
   bool only_passed_ = false;       // those that landed last
   std::vector<Arrival> passing_;   // beads that do not, in the order of their landing
   double steps_per_landing_ = 100; // recent average
-  double jets_ = 1;                // that share steps
   std::uint64_t last_step_ = 0;
 };
 
