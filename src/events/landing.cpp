@@ -258,8 +258,7 @@ void Landing::keep_pace(EventContext& context, std::size_t landings) {
   for (std::size_t i = 0; i < landings; ++i)
     steps_per_landing_ += (each - steps_per_landing_) / memory;
   const auto jets = static_cast<double>(options_.jets);
-  if (steps_per_landing_ < frequent * jets)
-    context.jet.absorbing_plane = plate_.distance;
+  if (steps_per_landing_ < frequent * jets) context.jet.absorbing_plane = plate_.distance;
   if (steps_per_landing_ > rare * jets) context.jet.absorbing_plane.reset();
 }
 

@@ -25,6 +25,7 @@ std::vector<BeadColumn> AxialStress<Law>::columns() const {
 template <class Law>
 void AxialStress<Law>::bind(const BeadTable& table) {
   stress_ = table.find_integrated("stress").value();
+  law_.fluid.bind(table);
 }
 
 template <class Law>
@@ -42,6 +43,7 @@ void AxialStress<Law>::add_force(const Stage& stage, Vec3View force) {
 
 template <class Law>
 void AxialStress<Law>::set_column_rates(const Stage& stage, JetColumns<double> rates) {
+  law_.fluid.look_at(stage);
   const Links& links = stage.links();
   const auto v = stage.columns.velocity();
   const double *l = links.length.data(), *dx = links.dx.data(), *dy = links.dy.data(),
@@ -110,6 +112,7 @@ double AxialStress<Law>::fed_rate(const Stage& stage) const {
 //     d sigma'/dw = G d/l^2,                  d sigma'/dd = G/l^2 (w - 2 (w.t) t)
 template <class Law>
 void AxialStress<Law>::add_derivatives(const Stage& stage, LinkDerivatives& out) {
+  law_.fluid.look_at(stage);
   const Links& links = stage.links();
   const auto sigma = stage.columns.column(stress_);
   LinkDerivatives::Column& column = out.add_column(stress_);
@@ -144,6 +147,7 @@ TermAccount AxialStress<Law>::account() const {
 
 template <class Law>
 double AxialStress<Law>::energy(const Stage& stage) {
+  law_.fluid.look_at(stage);
   const Links& links = stage.links();
   const auto sigma = stage.columns.column(stress_);
   double energy = 0;
@@ -156,6 +160,7 @@ double AxialStress<Law>::energy(const Stage& stage) {
 // included, at the nozzle. The link of a bead that has landed keeps its stress, and so its energy.
 template <class Law>
 void AxialStress<Law>::add_power(const Stage& stage, Exchange& exchange) {
+  law_.fluid.look_at(stage);
   const Links& links = stage.links();
   const auto v = stage.columns.velocity();
   const auto sigma = stage.columns.column(stress_);
@@ -186,6 +191,7 @@ void AxialStress<Law>::add_power(const Stage& stage, Exchange& exchange) {
 
 template <class Law>
 double AxialStress<Law>::feeding_power(const Stage& stage, const LinkContent& rate) {
+  law_.fluid.look_at(stage);
   const double sigma = stage.columns.column(stress_)[1];
   return rate.volume * sigma * sigma / (2 * law_.modulus(1));
 }
@@ -199,6 +205,7 @@ void AxialStress<Law>::add_tension(const Stage& stage, std::span<double> tension
 }
 
 template class AxialStress<MaxwellLaw<>>;
+template class AxialStress<MaxwellLaw<DryingFluid>>;
 template class AxialStress<HerschelBulkleyLaw<>>;
 
 Maxwell::Maxwell(double elastic_modulus, double viscosity)

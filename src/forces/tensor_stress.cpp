@@ -51,10 +51,12 @@ template <class Law>
 void TensorStress<Law>::bind(const BeadTable& table) {
   zz_ = table.find_integrated(column_name("zz")).value();
   rr_ = table.find_integrated(column_name("rr")).value();
+  law_.fluid.bind(table);
 }
 
 template <class Law>
 void TensorStress<Law>::add_force(const Stage& stage, Vec3View force) {
+  if constexpr (Law::coupled) law_.fluid.look_at(stage); // only there N1 depends on G
   const Links& links = stage.links();
   const double *l = links.length.data(), *v = stage.volume.data(),
                *zz = stage.columns.column(zz_).data(),
@@ -72,6 +74,7 @@ void TensorStress<Law>::add_force(const Stage& stage, Vec3View force) {
 
 template <class Law>
 void TensorStress<Law>::set_column_rates(const Stage& stage, JetColumns<double> rates) {
+  law_.fluid.look_at(stage);
   const Links& links = stage.links();
   const double *e = strain_rates(stage, strain_rate_),
                *zz = stage.columns.column(zz_).data(),
@@ -107,6 +110,7 @@ double TensorStress<Law>::entry_stretch(const Stage& stage) const {
 //     ds'/dw = dL/de d/l^2,             ds'/dd = dL/de (w - 2 (w.t) t)/l^2
 template <class Law>
 void TensorStress<Law>::add_derivatives(const Stage& stage, LinkDerivatives& out) {
+  law_.fluid.look_at(stage);
   const Links& links = stage.links();
   const auto [zz, rr] = [&] {
     const auto pair = out.add_pair(zz_, rr_, Law::coupled);
@@ -152,6 +156,7 @@ TermAccount TensorStress<Law>::account() const {
 
 template <class Law>
 double TensorStress<Law>::energy(const Stage& stage) {
+  law_.fluid.look_at(stage);
   const Links& links = stage.links();
   double energy = 0;
   for (std::size_t k = links.first; k <= links.last; ++k)
@@ -163,6 +168,7 @@ double TensorStress<Law>::energy(const Stage& stage) {
 // the nozzle. The link of a bead that has landed keeps its state, and so its energy.
 template <class Law>
 void TensorStress<Law>::add_power(const Stage& stage, Exchange& exchange) {
+  law_.fluid.look_at(stage);
   const Links& links = stage.links();
   const auto v = stage.columns.velocity();
   for (std::size_t k = links.first; k <= links.last; ++k) {
@@ -193,11 +199,13 @@ void TensorStress<Law>::add_power(const Stage& stage, Exchange& exchange) {
 
 template <class Law>
 double TensorStress<Law>::feeding_power(const Stage& stage, const LinkContent& rate) {
+  law_.fluid.look_at(stage);
   return rate.volume * law_.energy(1, state(stage, 1));
 }
 
 template <class Law>
 void TensorStress<Law>::add_tension(const Stage& stage, std::span<double> tension) {
+  if constexpr (Law::coupled) law_.fluid.look_at(stage); // only there N1 depends on G
   const Links& links = stage.links();
   for (std::size_t k = links.first; k <= links.last; ++k)
     tension[k] +=
@@ -221,9 +229,15 @@ double stretch_of_stress(std::span<const Law> laws, double stress_difference) {
   return std::exp((low + high) / 2);
 }
 
+template class TensorStress<UpperConvected<DryingFluid>>;
+template class TensorStress<Giesekus<DryingFluid>>;
+template class TensorStress<FeneP<DryingFluid>>;
 template class TensorStress<UpperConvected<>>;
 template class TensorStress<Giesekus<>>;
 template class TensorStress<FeneP<>>;
+template double stretch_of_stress(std::span<const UpperConvected<DryingFluid>>, double);
+template double stretch_of_stress(std::span<const Giesekus<DryingFluid>>, double);
+template double stretch_of_stress(std::span<const FeneP<DryingFluid>>, double);
 template double stretch_of_stress(std::span<const UpperConvected<>>, double);
 template double stretch_of_stress(std::span<const Giesekus<>>, double);
 template double stretch_of_stress(std::span<const FeneP<>>, double);

@@ -539,6 +539,16 @@ void check_evaporation(const SceneConfig& c, const SceneText& text) {
         fmt::format("evaporation.solid_fraction = {} and evaporation.polymer_fraction = "
                     "{}: must be more than that, or nothing could evaporate",
                     e.solid_fraction, e.polymer_fraction));
+  if (c.viscoelasticity
+      && (c.viscoelasticity->model == Rheology::kelvin_voigt
+          || c.viscoelasticity->model == Rheology::herschel_bulkley))
+    text.fail(
+        "viscoelasticity.model",
+        fmt::format(
+            "viscoelasticity.model = \"{}\" and [evaporation]: only the modulus and the "
+            "relaxation time of a Maxwell fluid and of the stress tensors follow the "
+            "polymer fraction. Take another model",
+            name_of(c.viscoelasticity->model, rheologies)));
   // Volumes of real solutions do not add up exactly.
   constexpr double tolerated = 0.1;
   const double density = e.solution().density();
@@ -592,6 +602,11 @@ void check_array(const SceneConfig& c, const SceneText& text) {
       text.fail(fmt::format("output.{}", key),
                 fmt::format("output.{} and [array]: {}", key, why));
   };
+  if (c.collector && (c.collector->charge == CollectorCharge::kept_on_mat || has_images(c)))
+    text.fail("array",
+              fmt::format("[array] and collector.{}: each jet would see its own ones only. "
+                          "Remove one",
+                          has_images(c) ? "images" : "charge = \"kept-on-mat\""));
   refuse("budget", c.output.budget.has_value(),
          "a budget is that of a single jet. Remove one");
   refuse("resolving_power", c.output.resolving_power.has_value(),

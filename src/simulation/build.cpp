@@ -252,12 +252,12 @@ Vaporisation vaporisation_of(const EvaporationConfig& c) {
 
 /// The modes of a tensor law, one term each. What leaves the nozzle of a pump with a stress has been
 /// stretched there, all modes alike.
-template <class Law, class MakeLaw>
-void add_modes(const SceneConfig& c, JetDynamics& dynamics, const MakeLaw& make_law) {
+template <class Law, class MakeFluid, class MakeLaw>
+void add_modes(const SceneConfig& c, JetDynamics& dynamics, const MakeFluid& make_fluid,
+               const MakeLaw& make_law) {
   std::vector<Law> laws;
   for (const RelaxationMode& m : c.viscoelasticity->relaxation_modes())
-    laws.push_back(make_law(
-        UniformFluid{.elastic_modulus = m.modulus, .relaxation = 1 / m.relaxation_time}));
+    laws.push_back(make_law(make_fluid(m.modulus, 1 / m.relaxation_time)));
   typename TensorStress<Law>::Options options;
   if (c.nozzle && !laws.empty())
     options.nozzle_stretch =
@@ -266,6 +266,27 @@ void add_modes(const SceneConfig& c, JetDynamics& dynamics, const MakeLaw& make_
     if (laws.size() > 1) ++options.mode;
     dynamics.add(std::make_unique<TensorStress<Law>>(law, options));
   }
+}
+
+/// Stress tensors of a fluid that `make_fluid` makes of G and 1/lambda.
+template <class MakeFluid>
+void add_tensors(const SceneConfig& c, JetDynamics& dynamics, const MakeFluid& make_fluid) {
+  using Fluid = decltype(make_fluid(1.0, 1.0));
+  const ViscoelasticityConfig& f = *c.viscoelasticity;
+  if (f.model == Rheology::giesekus)
+    add_modes<Giesekus<Fluid>>(
+        c, dynamics, make_fluid, [&f](const Fluid& fluid) -> Giesekus<Fluid> {
+          return {.fluid = fluid, .mobility = f.mobility.value_or(0)};
+        });
+  else if (f.model == Rheology::fene_p)
+    add_modes<FeneP<Fluid>>(
+        c, dynamics, make_fluid, [&f](const Fluid& fluid) -> FeneP<Fluid> {
+          return {.fluid = fluid, .extensibility = f.extensibility.value()};
+        });
+  else
+    add_modes<UpperConvected<Fluid>>(
+        c, dynamics, make_fluid,
+        [](const Fluid& fluid) -> UpperConvected<Fluid> { return {.fluid = fluid}; });
 }
 
 void add_kelvin_voigt(const SceneConfig& c, JetDynamics& dynamics) {
@@ -281,25 +302,33 @@ void add_kelvin_voigt(const SceneConfig& c, JetDynamics& dynamics) {
 
 void add_rheology(const SceneConfig& c, JetDynamics& dynamics) {
   const ViscoelasticityConfig& f = *c.viscoelasticity;
+  const auto uniform = [](double modulus, double relaxation) -> UniformFluid {
+    return {.elastic_modulus = modulus, .relaxation = relaxation};
+  };
+  const auto drying = [&c](double modulus, double relaxation) {
+    const EvaporationConfig& e = *c.evaporation;
+    return DryingFluid(modulus, relaxation,
+                       {.solution = e.solution(),
+                        .exponent = e.viscosity_exponent,
+                        .power = e.viscosity_power});
+  };
   switch (f.model) {
   case Rheology::maxwell:
-    dynamics.add(std::make_unique<Maxwell>(*f.elastic_modulus, *f.viscosity));
+    if (c.evaporation)
+      dynamics.add(
+          std::make_unique<AxialStress<MaxwellLaw<DryingFluid>>>(MaxwellLaw<DryingFluid>{
+              drying(*f.elastic_modulus, *f.elastic_modulus / *f.viscosity)}));
+    else
+      dynamics.add(std::make_unique<Maxwell>(*f.elastic_modulus, *f.viscosity));
     break;
   case Rheology::upper_convected_maxwell:
   case Rheology::oldroyd_b:
-    add_modes<UpperConvected<>>(
-        c, dynamics,
-        [](const UniformFluid& fluid) -> UpperConvected<> { return {.fluid = fluid}; });
-    break;
   case Rheology::giesekus:
-    add_modes<Giesekus<>>(c, dynamics, [&f](const UniformFluid& fluid) -> Giesekus<> {
-      return {.fluid = fluid, .mobility = f.mobility.value_or(0)};
-    });
-    break;
   case Rheology::fene_p:
-    add_modes<FeneP<>>(c, dynamics, [&f](const UniformFluid& fluid) -> FeneP<> {
-      return {.fluid = fluid, .extensibility = f.extensibility.value()};
-    });
+    if (c.evaporation)
+      add_tensors(c, dynamics, drying);
+    else
+      add_tensors(c, dynamics, uniform);
     break;
   case Rheology::kelvin_voigt:
     add_kelvin_voigt(c, dynamics);

@@ -1,4 +1,5 @@
 #include "ehdjet/forces/evaporation.hpp"
+#include "ehdjet/forces/fluid.hpp"
 #include "ehdjet/jet/jet_state.hpp"
 
 #include <gtest/gtest.h>
@@ -38,6 +39,16 @@ TEST(Solution, dries_to_a_radius_that_follows_from_the_densities) {
     const double lost = solution.lost_at(0.9);
     EXPECT_NEAR(1 - s * lost / solution.density(), c / 0.9, 1e-14);
   }
+}
+
+// mu/mu_0 with B = 7, m = 0.1, c_0 = 0.06, and tau/tau_0.
+TEST(Thickening, has_its_published_values) {
+  const Thickening law{.solution = {1200, 789, 0.06}};
+  EXPECT_NEAR(law.viscosity_ratio(0.1), 1.891915, 5e-7);
+  EXPECT_NEAR(law.viscosity_ratio(0.2), 4.742239, 5e-7);
+  EXPECT_NEAR(law.viscosity_ratio(0.5), 17.694362, 5e-7);
+  EXPECT_NEAR(law.viscosity_ratio(0.9), 43.978335, 5e-7);
+  EXPECT_NEAR(law.relaxation_ratio(0.9), 15, 1e-14);
 }
 
 /// One straight link that moves across itself through still air, with a length that stays.

@@ -3,6 +3,7 @@
 #include "ehdjet/coulomb/make_solver.hpp"
 #include "ehdjet/forces/air_drag.hpp"
 #include "ehdjet/forces/evaporation.hpp"
+#include "ehdjet/forces/fluid.hpp"
 #include "ehdjet/jet/jet_axis.hpp"
 #include "ehdjet/refinement/refine_jet.hpp"
 
@@ -193,6 +194,8 @@ struct EvaporationConfig {
   double humidity = 0;                                           ///< phi [-]
   double solid_fraction = 0.9;                                   ///< c_solid [-]
   double still_air_sherwood = Vaporisation{}.still_air_sherwood; ///< [-]
+  double viscosity_exponent = Thickening{}.exponent;             ///< B [-]
+  double viscosity_power = Thickening{}.power;                   ///< m [-]
   bool operator==(const EvaporationConfig&) const = default;
 
   [[nodiscard]] Solution solution() const {
@@ -233,7 +236,7 @@ struct RefinementConfig {
   ColumnRemap velocity = ColumnRemap::spline;
   std::optional<ColumnRemap> stress = {}; ///< none: spline; conservative for tensors
   std::optional<double> coarsen = {};     ///< join links together shorter than this [m]
-  std::optional<double> shortest = {}; ///< join links shorter than so many radii [-]
+  std::optional<double> shortest = {};    ///< join links shorter than so many radii [-]
   bool operator==(const RefinementConfig&) const = default;
 };
 

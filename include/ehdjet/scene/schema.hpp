@@ -400,6 +400,10 @@ void describe(V& v, EvaporationConfig& c) {
              "polymer fraction at which evaporation ends; more than polymer_fraction");
   v.optional("still_air_sherwood", c.still_air_sherwood, non_negative("-", 10),
              "Sherwood number of a jet that moves with the air");
+  v.optional(
+      "viscosity_exponent", c.viscosity_exponent, between("-", 0, 50),
+      "B of the viscosity mu_0 10^(B (c^m - c_0^m)); the relaxation time grows like c");
+  v.optional("viscosity_power", c.viscosity_power, positive("-", 10), "m of the viscosity");
 }
 
 template <class V>
