@@ -268,7 +268,7 @@ TEST_P(EachRheology, keeps_its_sums_on_another_mesh) {
     const auto expected = sums();
     ASSERT_FALSE(expected.empty());
     const RefinementRule rule{
-        .length = 0.05 * cm, .coarsen = {}, .collector = {}, .has_nozzle = true};
+        .length = 0.05 * cm, .coarsen = {}, .shortest = {}, .collector = {}};
     ASSERT_TRUE(mesh == RefinedMesh::cut ? cut_links(jet, rule) : refine_jet(jet, rule));
     EXPECT_GT(jet.beads(), before);
     const auto got = sums();
