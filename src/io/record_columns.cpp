@@ -43,9 +43,7 @@ public:
       : sum_(sum) {}
   double operator()(const JetSnapshot& s) { return rate(s.time, s.ledger.*sum_); }
   double operator()(const ArraySnapshot& s) {
-    double now = 0;
-    for (const Ledger& ledger : s.ledgers) now += ledger.*sum_;
-    return rate(s.time, now);
+    return rate(s.time, sum_of(s.ledgers).*sum_);
   }
 
 private:
@@ -62,7 +60,7 @@ private:
   double previous_ = 0;
 };
 
-/// The mean and the largest over the jets of an array of what `of` says of each.
+/// The mean or the largest over the jets of an array of what `of` says of each.
 template <class Of>
 auto mean(Of of) {
   return [of](const ArraySnapshot& s) {
@@ -82,6 +80,9 @@ auto largest(Of of) {
 
 auto from_ledger(double Ledger::*value) {
   return [value](const JetSnapshot& s) { return s.ledger.*value; };
+}
+auto from_ledgers(double Ledger::*value) {
+  return [value](const ArraySnapshot& s) { return sum_of(s.ledgers).*value; };
 }
 auto from_statistics(std::uint64_t RunStatistics::*value) {
   return [value](const auto& s) { return static_cast<double>(s.statistics.*value); };
@@ -182,11 +183,11 @@ std::vector<RecordColumn<ArraySnapshot>> array_observable_columns() {
        largest(tip_from_axis)},
       {{"path_length", "m", "length of a jet, chord by chord: mean"}, mean(length_of_path)},
       {{"nozzle_speed", "m/s", "speed given to the last released bead of a jet: mean"},
-       mean(from_ledger(&Ledger::release_speed))},
+       from_ledgers(&Ledger::release_speed)},
       {{"impact_speed", "m/s", "speed of the last landed bead of a jet: mean"},
-       mean(from_ledger(&Ledger::impact_speed))},
+       from_ledgers(&Ledger::impact_speed)},
       {{"collector_radius", "m", "of the last landed link of a jet: mean"},
-       mean(from_ledger(&Ledger::collector_radius))},
+       from_ledgers(&Ledger::collector_radius)},
       {{"current_in", "A", "charge inserted since the previous row, over time: sum"},
        Rate(&Ledger::inserted_charge)},
       {{"current_out", "A", "charge removed since the previous row, over time: sum"},

@@ -18,10 +18,13 @@ Ledger sum_of(std::span<const Ledger> ledgers) {
     sum.inserted_mass += l.inserted_mass, sum.removed_mass += l.removed_mass;
     sum.inserted_charge += l.inserted_charge, sum.removed_charge += l.removed_charge;
     sum.inserted_volume += l.inserted_volume, sum.removed_volume += l.removed_volume;
-    const double share = 1 / static_cast<double>(ledgers.size());
-    sum.release_speed += share * l.release_speed;
-    sum.impact_speed += share * l.impact_speed;
-    sum.collector_radius += share * l.collector_radius;
+  }
+  for (double Ledger::*value :
+       {&Ledger::release_speed, &Ledger::impact_speed, &Ledger::collector_radius}) {
+    double jets = 0;
+    for (const Ledger& l : ledgers)
+      if (l.*value != 0) sum.*value += l.*value, ++jets;
+    if (jets > 0) sum.*value /= jets;
   }
   return sum;
 }

@@ -598,20 +598,18 @@ void check_array(const SceneConfig& c, const SceneText& text) {
               "integrator.method = \"two-rate\" and [array]: all jets of an array take "
               "common steps of one rate. Take \"auto\" (the default)");
   const auto refuse = [&](const char* key, bool given, const char* why) {
-    if (given)
-      text.fail(fmt::format("output.{}", key),
-                fmt::format("output.{} and [array]: {}", key, why));
+    if (given) text.fail(key, fmt::format("{} and [array]: {}", key, why));
   };
-  if (c.collector && (c.collector->charge == CollectorCharge::kept_on_mat || has_images(c)))
-    text.fail("array",
-              fmt::format("[array] and collector.{}: each jet would see its own ones only. "
-                          "Remove one",
-                          has_images(c) ? "images" : "charge = \"kept-on-mat\""));
-  refuse("budget", c.output.budget.has_value(),
+  refuse("collector.images", has_images(c),
+         "a jet would feel the images of its own charges only. Remove one");
+  refuse("collector.charge",
+         c.collector && c.collector->charge == CollectorCharge::kept_on_mat,
+         "a jet would feel its own fibre only. Take \"grounded\" (the default)");
+  refuse("output.budget", c.output.budget.has_value(),
          "a budget is that of a single jet. Remove one");
-  refuse("resolving_power", c.output.resolving_power.has_value(),
+  refuse("output.resolving_power", c.output.resolving_power.has_value(),
          "the resolving power is sampled along a single jet. Remove one");
-  refuse("refinements", c.output.refinements == RefinementRecords::energies,
+  refuse("output.refinements", c.output.refinements == RefinementRecords::energies,
          "the energy of the pairs is that of all jets together. Take \"sums\"");
 }
 

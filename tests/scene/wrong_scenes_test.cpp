@@ -191,6 +191,16 @@ const Wrong wrong_scenes[] = {
      "[coulomb]",
      "[coulomb]\n[array]\nrows = 1\ncolumns = 2",
      {"array.spacing", "missing"}},
+    {"images_of_an_array",
+     "distance = 0.16",
+     "distance = 0.16\nimages = \"collector\"\n[array]\nrows = 1\ncolumns = 2\nspacing = "
+     "0.01",
+     {"s.toml:12: ", "collector.images and [array]"}},
+    {"fibres_of_an_array_that_keep_their_charge",
+     "distance = 0.16",
+     "distance = 0.16\ncharge = \"kept-on-mat\"\n[array]\nrows = 1\ncolumns = 2\nspacing = "
+     "0.01",
+     {"s.toml:12: ", "collector.charge and [array]"}},
     {"budget_of_an_array",
      "observables = 1e-4",
      "budget = 1e-4\n[array]\nrows = 1\ncolumns = 2\nspacing = 0.01",

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <numbers>
@@ -10,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "support/allocations.hpp"
 #include "support/pumped.hpp"
 #include "support/refined.hpp"
 
@@ -225,6 +227,18 @@ TEST(Array, feeds_all_jets_by_pumps) {
   EXPECT_GT(tip_z(1), 1e-3);
 }
 
+// Both switches happen at one instant, and the plate takes the deposit of both jets along.
+TEST(Array, has_one_field_and_one_plate) {
+  Scene scene = case_one("dormand-prince", 1e-5);
+  scene.config.collector->charge = CollectorCharge::grounded;
+  scene.config.collector->velocity = std::array{0.0, 1.0, 0.0};
+  scene.config.field->waveform = FieldWaveform::square;
+  scene.config.field->frequency = 400;
+  expect_the_single_jet(scene, 5e-3);
+  const auto simulation = run_array(array_of(scene, 1, 2, 0.01), 2e-3);
+  for (std::size_t j = 0; j < 2; ++j) EXPECT_TRUE(simulation->jet(j).field_is_off) << j;
+}
+
 TEST(Array, repels_its_jets_alike_with_any_method_and_solver) {
   Scene scene = array_of(case_one("dop853", 1e-9), 1, 2, 0.01);
   const auto exact = run_array(scene, 3e-3);
@@ -320,6 +334,40 @@ TEST(Array, shows_its_jets_where_they_are) {
   }
   ASSERT_GE(watched->seen.size(), end.size());
   EXPECT_TRUE(std::equal(end.rbegin(), end.rend(), watched->seen.rbegin()));
+}
+
+TEST(Array, allocates_nothing_in_a_step_while_its_chains_stay) {
+  for (const char* method : {"dormand-prince", "ros34pw2"}) {
+    const auto simulation = build_array_simulation(
+        array_of(case_one(method, 1e-6), 1, 2, 0.01, ArrayPhases::spread));
+    std::size_t before = 0, allocated = 0;
+    long steps = 0, since_event = 0;
+    std::uint64_t events = 0;
+    simulation->after_each_step([&](const ArraySimulation& s) {
+      // The step after an event meets a chain of another size.
+      const std::uint64_t now = s.statistics().insertions + s.statistics().releases;
+      since_event = now == events ? since_event + 1 : 0;
+      events = now;
+      if (since_event > 1) allocated += allocations() - before, ++steps;
+      before = allocations();
+    });
+    simulation->run_until(1e-3);
+    EXPECT_GT(steps, 30) << method;
+    EXPECT_EQ(allocated, 0U) << method;
+  }
+}
+
+TEST(Array, names_the_jet_that_ends_a_run) {
+  Scene scene = array_of(case_one("dormand-prince", 1e-12), 1, 2, 0.01);
+  scene.config.integrator.min_step = 1e-6;
+  try {
+    run_array(scene, 1e-3);
+    FAIL();
+  } catch (const RunError& e) {
+    const std::string text = e.what();
+    for (const char* part : {"collapsed at t = ", "of jet ", "the strongest force"})
+      EXPECT_NE(text.find(part), std::string::npos) << text;
+  }
 }
 
 TEST(Array, is_no_single_jet) {

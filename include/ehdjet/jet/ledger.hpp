@@ -26,7 +26,7 @@ struct Ledger {
 
 void archive(const Archive& a, Ledger& ledger);
 
-/// What has entered and left several jets; speeds and radius are means over the jets.
+/// What has entered and left several jets. Speeds and radius are means over the jets that have them.
 [[nodiscard]] Ledger sum_of(std::span<const Ledger> ledgers);
 
 /// A bead that has left the chain: one element of the deposited fibre (model 5).
