@@ -129,6 +129,13 @@ std::string summary(const RunResult& result, const SceneConfig& scene,
   if (cost.coincident_pairs > 0)
     text += fmt::format("  warning       {} pairs of beads at zero distance were skipped\n",
                         cost.coincident_pairs);
+  if (result.fibre)
+    text += fmt::format("  fibre         {:.4g} m landed at {:.3g} m/s since t = {:.4g} s, "
+                        "{:.3g} % of its volume "
+                        "evaporated\n  dry diameter  {:.4g} um, scatter {:.2g} um\n",
+                        result.fibre->length, result.fibre->speed, scene.run.end_time / 2,
+                        100 * result.fibre->evaporated, 1e6 * result.fibre->diameter,
+                        1e6 * result.fibre->scatter);
   return text + fmt::format("  written to    {}\n", file.string());
 }
 

@@ -15,6 +15,7 @@
 #include <memory>
 #include <string_view>
 #include <system_error>
+#include <type_traits>
 #include <utility>
 
 namespace ehdjet {
@@ -162,6 +163,12 @@ RunResult run_into_file(S& simulation, const Scene& scene, const fs::path& path,
   const auto file = std::make_shared<RunFile>(path, options.overwrite, provenance,
                                               scene.config.output.flush);
   add_records(simulation, file, scene);
+  std::shared_ptr<DryFibre> fibre;
+  if constexpr (std::is_same_v<S, Simulation>)
+    if (const auto& table = simulation.jet().table; table->drying()) {
+      fibre = std::make_shared<DryFibre>(table, scene.config.run.end_time / 2);
+      simulation.add(fibre);
+    }
   if (started) started(simulation);
   if (options.interrupted) // added last, so that the other observers see the last step
     simulation.after_each_step([&](const S& s) {
@@ -172,6 +179,7 @@ RunResult run_into_file(S& simulation, const Scene& scene, const fs::path& path,
   const auto finish = [&](const char* status, const std::string& message) {
     RunResult result = end_of(simulation, scene, std::string_view(status) == "failed");
     result.status = status, result.message = message;
+    if (fibre) result.fibre = fibre->summary();
     std::map<std::string, std::string> notes;
     if (!result.coulomb_method.empty()) notes["coulomb"] = result.coulomb_method;
     file->finish(status, message, result.statistics, result.ledger, notes);

@@ -1,5 +1,7 @@
 #include "ehdjet/forces/evaporation.hpp"
 #include "ehdjet/forces/fluid.hpp"
+#include "ehdjet/forces/maxwell.hpp"
+#include "ehdjet/forces/tensor_stress.hpp"
 #include "ehdjet/jet/jet_state.hpp"
 
 #include <gtest/gtest.h>
@@ -8,9 +10,11 @@
 #include <memory>
 #include <numbers>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "support/march.hpp"
+#include "support/term_chain.hpp"
 
 namespace ehdjet {
 namespace {
@@ -165,6 +169,53 @@ TEST(Evaporation, of_a_link_that_is_fed_is_thinned_by_fresh_fluid) {
   const double fresh = pi * 16e-12 * 1e-3, flow = 1e-9;
   EXPECT_NEAR((link.rate(0.2, Feed{.flow_rate = flow}) - link.rate(0.2)) * fresh / flow,
               -0.2, 1e-9);
+}
+
+/// A crooked chain whose links have lost half of their volume, with some state in all other columns.
+template <class Term>
+std::pair<std::vector<double>, double> rates_and_energy(Term& term, Evaporation& drying) {
+  TermChain chain(6, {&drying, &term});
+  for (std::size_t k = 0; k < 6; ++k) {
+    const double i = static_cast<double>(k);
+    chain.place(k, {1e-3 * i, 2e-4 * std::sin(i), 0}, {0.3 * i, 0.1 * std::cos(i), 0});
+    chain.added(0)[k] = 0.5;
+    for (std::size_t c = 1; c < chain.added_columns(); ++c)
+      chain.added(c)[k] *= 1 + 0.1 * i; // conformations, which are 1
+    for (std::size_t c = 1; c < chain.added_columns(); ++c)
+      if (chain.added(c)[k] == 0) chain.added(c)[k] = 100 * i; // stresses
+  }
+  auto all = chain.rates();
+  all.erase(all.begin(), all.begin() + 7 * 6); // what the fluid has added
+  return {all, term.energy(chain.stage())};
+}
+
+template <template <class> class Law, template <class> class Term, class... Others>
+void expect_thickened(const Others&... others) {
+  const Thickening thickening{.solution = {1200, 789, 0.1}};
+  const double g = 5e3, rate = 2500;
+  const double fraction = thickening.solution.fraction_after(0.5);
+  const double mu = thickening.viscosity_ratio(fraction),
+               tau = thickening.relaxation_ratio(fraction);
+  Evaporation evaporation(
+      {1.21, nu, Vec3::Zero()}, thickening.solution,
+      {.diffusivity = ethanol_diffusivity, .saturation = ethanol_vapour});
+  Term<Law<DryingFluid>> drying(
+      Law<DryingFluid>{DryingFluid(g, rate, thickening), others...});
+  Term<Law<UniformFluid>> thick(Law<UniformFluid>{
+      UniformFluid{.elastic_modulus = g * mu / tau, .relaxation = rate / tau}, others...});
+  const auto [a, energy] = rates_and_energy(drying, evaporation);
+  const auto [b, expected] = rates_and_energy(thick, evaporation);
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i)
+    EXPECT_NEAR(a[i], b[i], 1e-12 * std::abs(b[i])) << i;
+  EXPECT_NEAR(energy / expected, 1, 1e-12);
+}
+
+TEST(DryingFluid, is_a_fluid_with_the_viscosity_and_relaxation_time_of_its_fraction) {
+  expect_thickened<MaxwellLaw, AxialStress>();
+  expect_thickened<UpperConvected, TensorStress>();
+  expect_thickened<Giesekus, TensorStress>(0.1);
+  expect_thickened<FeneP, TensorStress>(100.0);
 }
 
 } // namespace

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "support/rheologies.hpp"
 #include "support/scenes.hpp"
 
 namespace ehdjet {
@@ -87,6 +88,21 @@ TEST(DryingJet, converges_whatever_the_method) {
     const double at_5 = error(1e-5), at_7 = error(1e-7);
     EXPECT_LE(at_5, 3e-5) << method;
     EXPECT_LE(at_7, 0.05 * at_5) << method;
+  }
+}
+
+TEST(DryingJet, of_every_fluid_that_thickens_runs_whatever_the_method) {
+  for (const NamedRheology& r : rheologies_of_pvp()) {
+    if (r.fluid.model == Rheology::kelvin_voigt
+        || r.fluid.model == Rheology::herschel_bulkley)
+      continue;
+    JetState jets[2];
+    for (const bool implicit : {false, true}) {
+      Scene scene = drying_jet(implicit ? "ros34pw2" : "dormand-prince", 1e-7);
+      scene.config.viscoelasticity = r.fluid;
+      jets[implicit ? 1 : 0] = run(scene, 3e-3)->jet();
+    }
+    EXPECT_LE(largest_distance(jets[0], jets[1]), 1e-6) << r.name;
   }
 }
 

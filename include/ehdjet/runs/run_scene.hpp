@@ -1,6 +1,7 @@
 #pragma once
 
 #include "ehdjet/budget/effective_tension.hpp"
+#include "ehdjet/observers/dry_fibre.hpp"
 #include "ehdjet/scene/read_scene.hpp"
 #include "ehdjet/simulation/build.hpp"
 
@@ -45,6 +46,8 @@ struct RunResult {
   std::string coulomb_method; ///< description of the solver; empty for the direct sum
   /// At the end; only with a near field.
   std::optional<EffectiveTension::Summary> tension = {};
+  /// What a drying jet has laid down in the second half of the run; not of an array.
+  std::optional<DryFibre::Summary> fibre = {};
   std::vector<JetState> array = {}; ///< the jets of an array, from its axis
 };
 
