@@ -21,7 +21,7 @@ struct RefinementRule {
   std::optional<double> coarsen;
   /// A link shorter than so many of its own radii becomes one with a neighbour: it is no thread any more;
   /// absent: never.
-  std::optional<double> shortest;
+  std::optional<double> shortest = {};
   std::optional<double> collector; ///< h: new beads are not put beyond it [m]
   /// Bead 0 is the nozzle: the link that is being fed, which grows to 2 l_step, is left alone.
   bool has_nozzle = true;
