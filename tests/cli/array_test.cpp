@@ -41,8 +41,9 @@ std::vector<double> column(const std::string& csv, const std::string& name) {
 
 TEST(ArrayCommand, writes_and_exports_the_jet_of_each_bead) {
   const Folder folder;
-  const Outcome run =
-      command(folder, run_to("11e-3", "--set integrator.rtol=1e-4 -o a.h5"));
+  const Outcome run = command(
+      folder,
+      run_to("11e-3", "--set integrator.rtol=1e-4 --set output.observables=1e-3 -o a.h5"));
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_THAT(run.out, AllOf(HasSubstr("jets          2"), HasSubstr("path lengths")));
 
