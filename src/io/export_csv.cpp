@@ -40,15 +40,16 @@ RunTable in_order(RunTable table, const List& list) {
   return table;
 }
 
-// Of the fibre of each jet.
+// Of the fibre of each jet, from the volume that its links have when they leave the chain.
 std::vector<double> arc_length(const RunTable& deposit) {
   const auto &volume = deposit["volume"], &radius = deposit["radius"];
-  const RunTable::Column* jet = deposit.find("jet");
+  const RunTable::Column *jet = deposit.find("jet"), *lost = deposit.find(evaporated);
   std::vector<double> lengths(deposit.rows());
   std::map<double, double> end;
   for (std::size_t k = 0; k < deposit.rows(); ++k)
     lengths[k] = end[jet != nullptr ? jet->values[k] : 0] +=
-        volume[k] / (std::numbers::pi * radius[k] * radius[k]);
+        volume[k] * (lost != nullptr ? 1 - lost->values[k] : 1)
+        / (std::numbers::pi * radius[k] * radius[k]);
   return lengths;
 }
 

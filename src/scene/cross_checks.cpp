@@ -673,6 +673,17 @@ void settle(SceneConfig& config, const SceneText& text) {
 }
 
 void check_chain_fits(const Scene& scene, const SceneText& text) {
+  const auto lost = scene.chain.others.find(evaporated);
+  if (scene.config.evaporation && lost != scene.chain.others.end()) {
+    const double most = 1 - scene.config.evaporation->solution().polymer_volume();
+    for (std::size_t k = 1; k < lost->second.values.size(); ++k)
+      if (const double e = lost->second.values[k]; !(e >= 0 && e < most))
+        text.fail(
+            "chain.file",
+            fmt::format("{} = {} of bead {} of {}: must be from 0 to less than {:.6g}, the "
+                        "share of the solvent in the volume at the nozzle",
+                        evaporated, e, k, scene.config.chain->file, most));
+  }
   if (!scene.config.collector) return;
   const double h = scene.config.collector->distance;
   const auto& x = scene.chain.x;

@@ -1,8 +1,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <gmock/gmock.h>
+#include <map>
+#include <sstream>
 #include <string>
+#include <vector>
 
 #include "cli/command.hpp"
 
@@ -214,6 +218,45 @@ TEST(Threads, wait_for_a_bounded_time_unless_the_user_says_otherwise) {
   EXPECT_THAT(environment("GOMP_SPINCOUNT=77"),
               AllOf(HasSubstr("GOMP_SPINCOUNT = '77'"), Not(HasSubstr("'1000'"))));
   EXPECT_THAT(environment("OMP_WAIT_POLICY=passive"), Not(HasSubstr("'1000'")));
+}
+
+// A jet that dries within five millimetres, onto a plate that moves.
+TEST(Run, tells_the_dry_diameter_of_a_fibre_and_exports_its_length) {
+  const Folder folder;
+  const Outcome run = command(
+      folder, "run " EHDJET_SCENES
+              "/fibre.toml --set collector.distance=5e-3 --set field.potential=500 --set "
+              "run.end_time=12e-3 --set evaporation.saturation=2 --set output.frames=6e-3 "
+              "--threads 1 --set 'collector.velocity=[0,1,0]' -o f.h5");
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.out, testing::ContainsRegex("dry diameter +[0-9.]+ um"));
+
+  std::istringstream lines(command(folder, "export f.h5 --deposit").out);
+  std::string line, field;
+  std::vector<std::string> names;
+  std::vector<std::map<std::string, double>> rows;
+  std::getline(lines, line);
+  for (std::istringstream header(line); std::getline(header, field, ',');)
+    names.push_back(field);
+  while (std::getline(lines, line)) {
+    std::istringstream fields(line);
+    auto& row = rows.emplace_back();
+    for (const std::string& name : names) {
+      std::getline(fields, field, ',');
+      row[name] = std::stod(field);
+    }
+  }
+  ASSERT_GT(rows.size(), 10U);
+  double chords = 0;
+  for (std::size_t k = 1; k < rows.size(); ++k) {
+    auto &a = rows[k - 1], &b = rows[k];
+    chords += std::hypot(a["y_m"] - b["y_m"], a["z_m"] - b["z_m"]);
+    EXPECT_GT(b["evaporated"], 0.1);
+    EXPECT_LT(b["dry_radius_m"], b["radius_m"]);
+  }
+  // A link leaves the chain when both its ends rest on the plate.
+  EXPECT_NEAR((rows.back()["arc_length_m"] - rows.front()["arc_length_m"]) / chords, 1,
+              0.01);
 }
 
 } // namespace

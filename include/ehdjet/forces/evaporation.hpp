@@ -46,7 +46,7 @@ struct Vaporisation {
 /// source : Yarin, Koombhongse & Reneker, J. Appl. Phys. 89 (2001) 3018
 class Evaporation final : public ForceTerm {
 public:
-  static constexpr std::string_view column = "evaporated";
+  static constexpr std::string_view column = evaporated;
 
   Evaporation(AirFlow air, const Solution& solution, const Vaporisation& vaporisation);
   [[nodiscard]] std::string_view name() const override { return "evaporation"; }

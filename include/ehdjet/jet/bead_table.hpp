@@ -39,6 +39,9 @@ struct Drying {
   double dry = 0;  ///< what is left of the volume when all solvent has gone, over V_0 [-]
 };
 
+/// The name of that column, in files too.
+inline constexpr const char* evaporated = "evaporated";
+
 /// One property of beads or links, and all that those who move, store or write it need to know.
 struct BeadColumn {
   std::string name, unit, description;
