@@ -133,7 +133,7 @@ std::string summary(const RunResult& result, const SceneConfig& scene,
     text += fmt::format("  fibre         {:.4g} m landed at {:.3g} m/s since t = {:.4g} s, "
                         "{:.3g} % of its volume "
                         "evaporated\n  dry diameter  {:.4g} um, scatter {:.2g} um\n",
-                        result.fibre->length, result.fibre->speed, scene.run.end_time / 2,
+                        result.fibre->length, result.fibre->speed, result.fibre->since,
                         100 * result.fibre->evaporated, 1e6 * result.fibre->diameter,
                         1e6 * result.fibre->scatter);
   return text + fmt::format("  written to    {}\n", file.string());

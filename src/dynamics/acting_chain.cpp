@@ -53,6 +53,7 @@ void ActingChain::bind(const JetState& jet, std::optional<double> absorbing_plan
 
 const Stage& ActingChain::at_flying_on() {
   const std::size_t begin = flying_on();
+  stage_.absorbed = {};
   for (std::size_t i = 0; i < flying_on_; ++i) charge_[absorbed_[i]] = charge_before_[i];
   stage_.targets.begin = std::max(stage_.targets.begin, begin);
   stage_.sources.end = std::min(stage_.sources.end, begin);
@@ -82,6 +83,7 @@ const Stage& ActingChain::at(double t, std::span<const double> y, BeadRange targ
   }
   if (drying_) dry(stage_.columns);
   if (absorbing_plane_) absorb(y);
+  stage_.absorbed = absorbed_;
   return stage_;
 }
 

@@ -155,6 +155,7 @@ void JetDynamics::let_fly_on(Vec3View force) {
 void JetDynamics::linearize(double t, std::span<const double> y) {
   const Stage& stage = chain_.at(t, y, targets_, sources_);
   linearized_at_ = t;
+  linearized_mass_.assign(chain_.mass().begin(), chain_.mass().end());
   jacobian_.reset(chain_.beads(), stage.first);
   for (const auto& term : terms_) term->add_derivatives(stage, jacobian_.links());
   for (const std::size_t k : chain_.held()) jacobian_.hold(k);
@@ -170,7 +171,7 @@ void JetDynamics::add_time_derivative(double factor, std::span<double> out) cons
   const Vec3 acceleration = inflow_->nozzle().acceleration(linearized_at_);
   const LinkDerivatives& links = jacobian_.links();
   const JetColumns<double> rates{out, chain_.beads()};
-  const double scale = factor * chain_.inverse_mass()[k];
+  const double scale = factor * (1 / linearized_mass_[k]);
   rates.velocity().add(k, scale * (links.pull_lower[k] * velocity));
   if (!links.damping.empty())
     rates.velocity().add(k, scale * (links.damping[k] * acceleration));

@@ -23,6 +23,7 @@ double FieldSwitch::next_time(double t) const {
 }
 
 std::optional<double> FieldSwitch::locate(const DenseStep& step) {
+  if (!step.keeps_chain()) return std::nullopt; // a macro step ends there
   located_ = next_time(step.t0);
   if (located_ > step.time(1)) return std::nullopt;
   return std::min((located_ - step.t0) / step.h, 1.0);

@@ -68,8 +68,8 @@ void Evaporation::set_column_rates(const Stage& stage, JetColumns<double> rates)
                *volume = stage.volume.data();
   double* out = rates.column(lost_).data();
   const double nu = air_.kinematic_viscosity();
-  const auto rate = [&](std::size_t k, std::size_t upstream) {
-    const Vec3 w = (v[k] + v[upstream]) / 2 - air_.velocity((r.x[k] + r.x[upstream]) / 2);
+  const auto rate = [&](std::size_t k, std::size_t upstream, const Vec3& v_upstream) {
+    const Vec3 w = (v[k] + v_upstream) / 2 - air_.velocity((r.x[k] + r.x[upstream]) / 2);
     const double radius = std::sqrt(volume[k] / (std::numbers::pi * l[k]));
     const double sherwood = still_ + driven_ * std::cbrt(2 * radius * w.norm() / nu);
     const double left = std::max((end_ - lost[k]) / ending_, -1.0);
@@ -78,8 +78,15 @@ void Evaporation::set_column_rates(const Stage& stage, JetColumns<double> rates)
   };
   for (std::size_t k = stage.targets.begin; k < links.head; ++k) out[k] = 0;
   for_parts(links.beads.begin, links.beads.end, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) out[k] = rate(k, links.upstream(k));
+    for (std::size_t k = begin; k < end; ++k) {
+      const std::size_t upstream = links.upstream(k);
+      out[k] = rate(k, upstream, v[upstream]);
+    }
   });
+  // A landed bead keeps the velocity of its impact as a record, but it rests on the plate.
+  for (const LandedBead& b : stage.landed)
+    if (const std::size_t k = b.bead + 1; k >= links.beads.begin && k < links.beads.end)
+      out[k] = rate(k, b.bead, stage.plate_velocity);
   if (stage.feed != nullptr && links.beads.begin <= 1 && links.beads.end > 1) {
     const double fresh_volume = stage.volume[1] / (1 - lost[1]);
     out[1] -= stage.feed->flow_rate / fresh_volume * lost[1]; // fresh fluid is mixed in

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <functional>
 #include <vector>
 
 namespace ehdjet {
@@ -24,12 +25,18 @@ struct LinkMotion {
 /// e = w.d/l^2 (model 2). A landed bead keeps the velocity of its impact as a record, but it
 /// moves with the plate. The upper end of a fed link moves at Q/A_1 relative to the nozzle, which stays in its plane:
 /// e = w.d/l^2 - Q/V_1 (model 4.3).
-inline LinkMotion motion_of(const Stage& stage, std::size_t k) {
+///
+/// A bead that has passed the collector in this step flies on with its velocity. A stress that has no memory
+/// would jump at the end of the step, where the bead rests; with `passed_rest` it rests already.
+inline LinkMotion motion_of(const Stage& stage, std::size_t k, bool passed_rest = false) {
   const Links& links = stage.links();
   const auto v = stage.columns.velocity();
   const auto velocity = [&](std::size_t bead) -> Vec3 {
     if (!stage.landed.empty()
         && std::ranges::binary_search(stage.landed, bead, {}, &LandedBead::bead))
+      return stage.plate_velocity;
+    if (passed_rest && !stage.absorbed.empty()
+        && std::ranges::binary_search(stage.absorbed, bead, std::greater{}))
       return stage.plate_velocity;
     return v[bead];
   };
@@ -41,12 +48,13 @@ inline LinkMotion motion_of(const Stage& stage, std::size_t k) {
   if (is_fed(stage, k)) motion.strain_rate -= stage.feed->flow_rate / stage.volume[k];
   return motion;
 }
-inline double strain_rate(const Stage& stage, std::size_t k) {
-  return motion_of(stage, k).strain_rate;
+inline double strain_rate(const Stage& stage, std::size_t k, bool passed_rest = false) {
+  return motion_of(stage, k, passed_rest).strain_rate;
 }
 
 /// e of the links links.first ... links.last [1/s]. `values` gets room for a value per link.
-inline const double* strain_rates(const Stage& stage, std::vector<double>& values) {
+inline const double* strain_rates(const Stage& stage, std::vector<double>& values,
+                                  bool passed_rest = false) {
   const Links& links = stage.links();
   const auto v = stage.columns.velocity();
   values.resize(links.length.size());
@@ -66,6 +74,10 @@ inline const double* strain_rates(const Stage& stage, std::vector<double>& value
   for (const LandedBead& b : stage.landed)
     for (const std::size_t k : {b.bead, b.bead + 1})
       if (k >= links.first && k <= links.last) e[k] = strain_rate(stage, k);
+  if (passed_rest)
+    for (const std::size_t bead : stage.absorbed)
+      for (const std::size_t k : {bead, bead + 1})
+        if (k >= links.first && k <= links.last) e[k] = strain_rate(stage, k, true);
   return e;
 }
 

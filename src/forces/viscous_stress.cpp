@@ -18,7 +18,7 @@ ViscousStress::ViscousStress(double viscosity)
 void ViscousStress::add_force(const Stage& stage, Vec3View force) {
   const Links& links = stage.links();
   const double *l = links.length.data(), *v = stage.volume.data(),
-               *e = strain_rates(stage, strain_rate_);
+               *e = strain_rates(stage, strain_rate_, true);
   double* t = per_link(links, tension_per_length_);
   for_parts(links.first, links.last + 1,
             [=, viscosity = viscosity_](std::size_t begin, std::size_t end) {
@@ -34,7 +34,7 @@ void ViscousStress::add_force(const Stage& stage, Vec3View force) {
 void ViscousStress::add_derivatives(const Stage& stage, LinkDerivatives& out) {
   const Links& links = stage.links();
   for (std::size_t k = links.first; k <= links.last; ++k) {
-    const LinkMotion motion = motion_of(stage, k);
+    const LinkMotion motion = motion_of(stage, k, true);
     const double l = links.length[k], scale = stage.volume[k] * viscosity_ / (l * l);
     const Vec3 t = links.vector(k) / l, &w = motion.velocity;
     out.add_damping(k, scale * t * t.transpose());

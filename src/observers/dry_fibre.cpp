@@ -30,7 +30,8 @@ void DryFibre::deposit(const DepositedBead& d) {
 std::optional<DryFibre::Summary> DryFibre::summary() const {
   if (!(length_ > 0)) return std::nullopt;
   const double mean = diameter_ / length_;
-  return Summary{.diameter = mean,
+  return Summary{.since = from_,
+                 .diameter = mean,
                  .scatter = std::sqrt(std::max(square_ / length_ - mean * mean, 0.0)),
                  .evaporated = evaporated_ / length_,
                  .speed = speed_ / length_,

@@ -9,6 +9,7 @@
 #include "ehdjet/io/records.hpp"
 #include "ehdjet/run_files/run_reader.hpp"
 
+#include <algorithm>
 #include <exception>
 #include <fmt/format.h>
 #include <functional>
@@ -166,7 +167,8 @@ RunResult run_into_file(S& simulation, const Scene& scene, const fs::path& path,
   std::shared_ptr<DryFibre> fibre;
   if constexpr (std::is_same_v<S, Simulation>)
     if (const auto& table = simulation.jet().table; table->drying()) {
-      fibre = std::make_shared<DryFibre>(table, scene.config.run.end_time / 2);
+      fibre = std::make_shared<DryFibre>(
+          table, std::max(scene.config.run.end_time / 2, time_of(simulation)));
       simulation.add(fibre);
     }
   if (started) started(simulation);

@@ -673,16 +673,22 @@ void settle(SceneConfig& config, const SceneText& text) {
 }
 
 void check_chain_fits(const Scene& scene, const SceneText& text) {
-  const auto lost = scene.chain.others.find(evaporated);
-  if (scene.config.evaporation && lost != scene.chain.others.end()) {
-    const double most = 1 - scene.config.evaporation->solution().polymer_volume();
-    for (std::size_t k = 1; k < lost->second.values.size(); ++k)
-      if (const double e = lost->second.values[k]; !(e >= 0 && e < most))
-        text.fail(
-            "chain.file",
-            fmt::format("{} = {} of bead {} of {}: must be from 0 to less than {:.6g}, the "
-                        "share of the solvent in the volume at the nozzle",
-                        evaporated, e, k, scene.config.chain->file, most));
+  if (const auto lost = scene.chain.others.find(evaporated);
+      lost != scene.chain.others.end()) {
+    const auto& drying = scene.config.evaporation;
+    constexpr double overshoot = 1e-3; // of the steps of an earlier run
+    const double most =
+        drying ? drying->solution().lost_at(drying->solid_fraction) + overshoot : 0.0;
+    for (std::size_t k = 0; k < lost->second.values.size(); ++k)
+      if (const double e = lost->second.values[k]; !(e >= 0 && e <= most))
+        text.fail("chain.file",
+                  fmt::format(
+                      "{} = {} of bead {} of {}: must be {}", evaporated, e, k,
+                      scene.config.chain->file,
+                      drying
+                          ? fmt::format("from 0 to {:.6g}, where the jet is solid", most)
+                          : "0 in a scene without [evaporation]: the volumes and masses of "
+                            "the file are those at the nozzle"));
   }
   if (!scene.config.collector) return;
   const double h = scene.config.collector->distance;

@@ -177,10 +177,12 @@ bool TwoRate::suits(const JetState& jet, bool in_use) const {
 StepOutcome TwoRate::attempt(const JetState& jet, const Ledger& ledger, double h) {
   start_ = jet.time, h_ = h;
   if (!ready_) prepare(jet);
-  if (inner_ready_)
+  if (inner_ready_) {
     take_back_inner(jet.time + h);
-  else
+    if (jet.table->drying()) bind_downstream(jet); // masses are those of the last stage
+  } else {
     prepare_inner(jet, ledger);
+  }
 
   const Simulation& inner = *parts_.inner;
   const std::uint64_t before = inner.dynamics().evaluations();

@@ -202,5 +202,23 @@ TEST(ChainScene, paths_are_relative_to_the_scene_and_beads_end_before_the_collec
   EXPECT_EQ(s.chain.size(), 2u); // a landed bead lies on the plane
 }
 
+TEST(ChainScene, of_links_that_are_half_dry_needs_evaporation_and_wet_enough_links) {
+  const TemporaryFile file(
+      ".csv", "x_m,y_m,z_m,mass_kg,charge_c,volume_m3,evaporated\n0,0,0,1e-9,2e-11,0,0\n"
+              "2e-4,0,0,1e-9,2e-11,1e-12,0.95\n");
+  const std::string folder = file.path.parent_path().string(),
+                    wet = "[run]\nend_time = 1e-6\n[chain]\nfile = \""
+                          + file.path.filename().string() + "\"\n";
+  const auto refusal = [&](const std::string& text) {
+    return complaint([&] { (void)read_scene_text(text, "s.toml", folder); });
+  };
+  expect_all(refusal(wet), {"evaporated = 0.95 of bead 1", "without [evaporation]"});
+  expect_all(
+      refusal(wet
+              + "[air]\n[evaporation]\nsolvent_density = 789\npolymer_density = "
+                "1200\npolymer_fraction = 0.1\ndiffusivity = 1e-5\nsaturation = 0.1\n"),
+      {"evaporated = 0.95 of bead 1", "from 0 to 0.92"});
+}
+
 } // namespace
 } // namespace ehdjet

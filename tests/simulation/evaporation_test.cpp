@@ -7,6 +7,7 @@
 #include <cmath>
 #include <memory>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -88,6 +89,27 @@ TEST(DryingJet, converges_whatever_the_method) {
     const double at_5 = error(1e-5), at_7 = error(1e-7);
     EXPECT_LE(at_5, 3e-5) << method;
     EXPECT_LE(at_7, 0.05 * at_5) << method;
+  }
+}
+
+// Masses that change from stage to stage must not spoil an implicit method.
+TEST(DryingJet, converges_with_the_order_of_the_method) {
+  const auto jet_after = [](const std::string& method, double step) {
+    Scene scene = drying_jet("dop853", 1e-13);
+    scene.config.evaporation->saturation *= 20;   // a few per cent of the mass per step
+    scene.config.air->drag = DragLaw::tangential; // smooth
+    if (step > 0) integrate_with_fixed_steps(scene, method, step);
+    return run(scene, 5e-4)->jet();
+  };
+  const JetState exact = jet_after("dop853", 0);
+  for (const auto& [method, longest, expected] :
+       {std::tuple{"rk4", 2e-6, 4.0}, {"ros34pw2", 1e-6, 3.0}}) {
+    std::vector<double> steps, errors;
+    for (int i = 0; i < 8; ++i) {
+      steps.push_back(longest * std::pow(2, -i / 2.0));
+      errors.push_back(largest_distance(jet_after(method, steps.back()), exact));
+    }
+    EXPECT_NEAR(observed_order(steps, errors), expected, 0.3) << method;
   }
 }
 

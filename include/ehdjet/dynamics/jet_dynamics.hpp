@@ -93,7 +93,7 @@ public:
 private:
   void let_fly_on(Vec3View force);
   void linearize(double t, std::span<const double> y) override;
-  void factorize(double eta) override { jacobian_.factorize(eta, chain_.mass()); }
+  void factorize(double eta) override { jacobian_.factorize(eta, linearized_mass_); }
   void solve(std::span<double> x) const override { jacobian_.solve(x); }
   void add_time_derivative(double factor, std::span<double> out) const override;
   [[nodiscard]] Modes fastest_modes() const override;
@@ -113,6 +113,8 @@ private:
   std::uint64_t evaluations_ = 0;
   ChainJacobian jacobian_;   // of the last linearization; empty as long as there was none
   double linearized_at_ = 0; // [s]
+  /// At that time: masses of fed and of drying links differ from stage to stage [kg].
+  std::vector<double> linearized_mass_;
 };
 
 } // namespace ehdjet

@@ -32,6 +32,8 @@ public:
   std::span<const LandedBead> landed;
   Vec3 plate_velocity = Vec3::Zero();  ///< of landed beads [m/s]
   std::span<const std::uint8_t> moves; ///< 1: the bead moves freely
+  /// Beads that have passed the collector since the step began, and stand where they crossed; descending.
+  std::span<const std::size_t> absorbed;
   /// Beads whose forces are asked for, and those whose charges act on them: all, unless only a part
   /// of the right-hand side is evaluated.
   BeadRange targets, sources;

@@ -15,6 +15,7 @@ public:
   void deposit(const DepositedBead& bead) override;
 
   struct Summary {
+    double since = 0;      ///< of beads that landed from then on [s]
     double diameter = 0;   ///< dry [m]
     double scatter = 0;    ///< its standard deviation [m]
     double evaporated = 0; ///< of the volume at the nozzle, at the landing [-]

@@ -209,7 +209,7 @@ struct SurfaceTensionConfig {
   bool operator==(const SurfaceTensionConfig&) const = default;
 };
 
-/// Conducting plane x = distance where beads land (model 5).
+/// Plane x = distance where beads land (model 5).
 struct CollectorConfig {
   double distance = 0; ///< h [m]
   CollectorCharge charge = CollectorCharge::grounded;

@@ -524,7 +524,9 @@ void describe(V& v, SceneConfig& c) {
           "other. Needs [nozzle] and [coulomb].");
   v.table("chain", c.chain,
           "The jet is a given chain of beads; none is inserted. Excludes [nozzle].");
-  v.table("collector", c.collector, "Conducting plane x = distance, where beads land.");
+  v.table("collector", c.collector,
+          "Plane x = distance, where beads land; it conducts unless its charge is kept on "
+          "a mat.");
   v.table("field", c.field, "Uniform electric field along +x, by exactly one of its keys.");
   v.table("gravity", c.gravity, "Gravity.");
   v.table("coulomb", c.coulomb,
