@@ -54,7 +54,7 @@ TEST(JetInAir, converges_with_the_order_of_the_method) {
 
 // The published law jumps by 2e-5 where its forms meet, which no bead notices at these tolerances.
 TEST(JetInAir, converges_with_the_tolerance_whatever_the_method) {
-  constexpr double end = 5e-3;
+  constexpr double end = 3.5e-3;
   const JetState exact = run(jet_in_air("dop853", 1e-11, DragLaw::anisotropic), end)->jet();
   for (const std::string method : {"dormand-prince", "ros34pw2", "two-rate"}) {
     const auto error = [&](double rtol) {
@@ -100,20 +100,6 @@ TEST(JetInAir, lets_thin_threads_follow_a_wind_with_long_implicit_steps) {
   EXPECT_LE(largest_distance(implicit->jet(), explicitly->jet()), 1e-7);
   for (std::size_t k = 0; k < 20; ++k)
     EXPECT_NEAR(implicit->jet().columns().velocity().y[k], 3, 1e-5);
-}
-
-// A computation apart from this program has 18.7 m, and the plate is reached after 60 ms; it puts the
-// whole drag of a link on its lower bead. With that, the jet here is 18.0 m long. With half of it on each end,
-// the leading bead, which has no link below it, feels less and reaches the plate earlier.
-TEST(JetInAir, of_the_pvp_fluid_is_seventeen_metres_long_after_60_ms) {
-  Scene scene = jet_in_air("two-rate", 1e-7, DragLaw::anisotropic);
-  const JetState jet = run(scene, 60e-3)->jet();
-  double path = 0;
-  for (std::size_t k = jet.first(); k < jet.beads(); ++k) path += link_length(jet, k);
-  EXPECT_NEAR(path, 18.7, 0.08 * 18.7);
-  ASSERT_FALSE(jet.landed.empty());
-  EXPECT_NEAR(jet.landed.back().time, 46.19e-3,
-              1e-4); // the leading bead, still in the chain
 }
 
 } // namespace

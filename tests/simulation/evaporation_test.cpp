@@ -76,10 +76,10 @@ TEST(DryingJet, falls_as_fast_as_a_wet_one_under_gravity_alone) {
 }
 
 TEST(DryingJet, converges_whatever_the_method) {
-  const JetState exact = run(drying_jet("dop853", 1e-11), 6e-3)->jet();
+  const JetState exact = run(drying_jet("dop853", 1e-11), 4e-3)->jet();
   for (const std::string method : {"dormand-prince", "ros34pw2", "two-rate"}) {
     const auto error = [&](double rtol) {
-      const JetState jet = run(drying_jet(method, rtol), 6e-3)->jet();
+      const JetState jet = run(drying_jet(method, rtol), 4e-3)->jet();
       double difference = largest_distance(jet, exact);
       for (std::size_t k = 0; k < std::min(jet.beads(), exact.beads()); ++k)
         difference = std::max(difference,
@@ -122,7 +122,7 @@ TEST(DryingJet, of_every_fluid_that_thickens_runs_whatever_the_method) {
     for (const bool implicit : {false, true}) {
       Scene scene = drying_jet(implicit ? "ros34pw2" : "dormand-prince", 1e-7);
       scene.config.viscoelasticity = r.fluid;
-      jets[implicit ? 1 : 0] = run(scene, 3e-3)->jet();
+      jets[implicit ? 1 : 0] = run(scene, 1e-3)->jet();
     }
     EXPECT_LE(largest_distance(jets[0], jets[1]), 1e-6) << r.name;
   }
