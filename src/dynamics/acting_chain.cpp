@@ -23,19 +23,7 @@ void ActingChain::bind(const JetState& jet, std::optional<double> absorbing_plan
   fed_since_ = jet.fed_since;
   feed_ = inflow != nullptr ? inflow->feed() : std::nullopt;
 
-  held_.clear();
-  if (inflow != nullptr || constraints_.ends.first) held_.push_back(0);
-  if (has_led_bead_) held_.push_back(1);
-  for (const LandedBead& b : landed_) held_.push_back(b.bead);
-  const std::size_t n = mass_.size();
-  const LedParts& led = constraints_.led;
-  for (std::size_t k = has_led_bead_ ? 2 : 1; k < led.head; ++k) held_.push_back(k);
-  for (std::size_t k = n - led.tail; k < n; ++k) held_.push_back(k);
-  frozen_ = held_;
-  if (constraints_.ends.last)
-    held_.push_back(jet.links()); // its link goes on like any other
-  moves_.assign(mass_.size(), 1);
-  for (const std::size_t k : held_) moves_[k] = 0;
+  find_held(jet);
 
   stage_.link_charge = charge_;
   if (constraints_.grounded_collector) {
@@ -49,6 +37,22 @@ void ActingChain::bind(const JetState& jet, std::optional<double> absorbing_plan
   mat_ = jet.mat, stage_.mat = mat_.get();
   stage_.plate_velocity = constraints_.plate_velocity;
   stage_.first = jet.first(), stage_.landed = landed_, stage_.moves = moves_;
+}
+
+void ActingChain::find_held(const JetState& jet) {
+  held_.clear();
+  if (constraints_.inflow != nullptr || constraints_.ends.first) held_.push_back(0);
+  if (has_led_bead_) held_.push_back(1);
+  for (const LandedBead& b : landed_) held_.push_back(b.bead);
+  const std::size_t n = mass_.size();
+  const LedParts& led = constraints_.led;
+  for (std::size_t k = has_led_bead_ ? 2 : 1; k < led.head; ++k) held_.push_back(k);
+  for (std::size_t k = n - led.tail; k < n; ++k) held_.push_back(k);
+  frozen_ = held_;
+  if (constraints_.ends.last)
+    held_.push_back(jet.links()); // its link goes on like any other
+  moves_.assign(mass_.size(), 1);
+  for (const std::size_t k : held_) moves_[k] = 0;
 }
 
 const Stage& ActingChain::at_flying_on() {

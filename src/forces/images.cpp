@@ -159,7 +159,6 @@ void ImageForce::add_force(const Stage& stage, Vec3View force) {
   const auto r = stage.columns.position();
   const BeadRange targets = stage.targets.within(stage.beads());
   const std::size_t begin = targets.begin, count = targets.size();
-  const BeadRange sources = stage.sources.within(stage.beads());
   const auto of = [&](auto column) { return column.subspan(begin, count); };
   seen_.resize(count), target_.resize(count), close_.clear();
   const Links& links = stage.links();
@@ -183,7 +182,14 @@ void ImageForce::add_force(const Stage& stage, Vec3View force) {
       {of(force.x), of(force.y), of(force.z)});
   for (const std::size_t k : close_)
     force.add(k, stage.charge[k] * field_of_others(stage, k));
+  correct(stage, targets, force);
+}
 
+// Takes away what the sum has of a bead's own images, and adds what it does not have of far ones.
+void ImageForce::correct(const Stage& stage, BeadRange targets, Vec3View force) const {
+  const auto r = stage.columns.position();
+  const BeadRange sources = stage.sources.within(stage.beads());
+  const std::size_t begin = targets.begin, count = targets.size();
   const Moments all = mirrors_.both_plates ? moments(stage) : Moments{};
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t k = begin + i;

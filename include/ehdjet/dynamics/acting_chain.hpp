@@ -95,6 +95,7 @@ public:
   const Stage& at_flying_on();
 
 private:
+  void find_held(const JetState& jet);
   void absorb(std::span<const double> y);
   void dry(JetColumns<const double> y);
 

@@ -71,6 +71,7 @@ private:
   [[nodiscard]] Vec3 middle(const Vec3& r) const;
   [[nodiscard]] Moments moments(const Stage& stage) const;
   [[nodiscard]] Moments moments(const Vec3& from_middle, double charge) const;
+  void correct(const Stage& stage, BeadRange targets, Vec3View force) const;
   [[nodiscard]] Vec3 rest_field(const Moments& of, const Vec3& from_middle) const;
   [[nodiscard]] double rest_potential(const Moments& of, const Vec3& from_middle) const;
   [[nodiscard]] Vec3 field_of_others(const Stage& stage, std::size_t bead) const;

@@ -49,8 +49,10 @@ public:
   }
   /// Geometry of the links at the targets: of those that end at a target and of the next one.
   [[nodiscard]] const Links& links() const {
-    if (!links_ready_) links_.compute(columns.position(), first, targets);
-    links_ready_ = true;
+    if (!links_ready_) { // never written to once they are: loops on all threads may ask
+      links_.compute(columns.position(), first, targets);
+      links_ready_ = true;
+    }
     return links_;
   }
 
