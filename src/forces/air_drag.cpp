@@ -158,6 +158,14 @@ struct Ends {
   }
 };
 
+TermAccount account_of_air() {
+  return {.channel = {.name = "air",
+                      .energy = "air_work",
+                      .energy_meaning = "work so far of the air",
+                      .momentum = "air_impulse",
+                      .momentum_meaning = "so far, of the air"}};
+}
+
 } // namespace
 
 DragCoefficients drag_coefficients(DragLaw law, double normal_reynolds,
@@ -245,11 +253,7 @@ void AirDrag::add_derivatives(const Stage& stage, LinkDerivatives& out) {
 }
 
 TermAccount AirDrag::account() const {
-  return {.channel = {.name = "air",
-                      .energy = "air_work",
-                      .energy_meaning = "work so far of the air",
-                      .momentum = "air_impulse",
-                      .momentum_meaning = "so far, of the air"}};
+  return account_of_air();
 }
 
 AirLift::AirLift(AirFlow air)
@@ -280,11 +284,7 @@ void AirLift::add_force(const Stage& stage, Vec3View force) {
 }
 
 TermAccount AirLift::account() const {
-  return {.channel = {.name = "air",
-                      .energy = "air_work",
-                      .energy_meaning = "work so far of the air",
-                      .momentum = "air_impulse",
-                      .momentum_meaning = "so far, of the air"}};
+  return account_of_air();
 }
 
 } // namespace ehdjet

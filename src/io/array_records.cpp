@@ -101,16 +101,6 @@ private:
   Column* jet_ = nullptr;
 };
 
-class Checkpoints final : public ArrayObserver {
-public:
-  explicit Checkpoints(std::shared_ptr<RunFile> file)
-      : file_(std::move(file)) {}
-  void checkpoint(const Checkpoint& checkpoint) override { file_->keep(checkpoint); }
-
-private:
-  std::shared_ptr<RunFile> file_;
-};
-
 } // namespace
 
 std::unique_ptr<ArrayObserver> record_array_observables(std::shared_ptr<RunFile> file,
@@ -139,7 +129,7 @@ std::unique_ptr<ArrayObserver> record_array_refinements(std::shared_ptr<RunFile>
 }
 
 std::unique_ptr<ArrayObserver> record_array_checkpoints(std::shared_ptr<RunFile> file) {
-  return std::make_unique<Checkpoints>(std::move(file));
+  return std::make_unique<CheckpointRecorder<ArrayObserver>>(std::move(file));
 }
 
 } // namespace ehdjet

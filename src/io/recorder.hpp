@@ -47,6 +47,18 @@ private:
   std::optional<Schedule> schedule_;
 };
 
+/// Keeps the last checkpoint of a run in its file.
+template <class Base>
+class CheckpointRecorder final : public Base {
+public:
+  explicit CheckpointRecorder(std::shared_ptr<RunFile> file)
+      : file_(std::move(file)) {}
+  void checkpoint(const Checkpoint& checkpoint) override { file_->keep(checkpoint); }
+
+private:
+  std::shared_ptr<RunFile> file_;
+};
+
 /// Where the frames of /beads end, and their times.
 class FrameTimes {
 public:

@@ -142,16 +142,6 @@ private:
   Column &time_, &power_;
 };
 
-class Checkpoints final : public Observer {
-public:
-  explicit Checkpoints(std::shared_ptr<RunFile> file)
-      : file_(std::move(file)) {}
-  void checkpoint(const Checkpoint& checkpoint) override { file_->keep(checkpoint); }
-
-private:
-  std::shared_ptr<RunFile> file_;
-};
-
 } // namespace
 
 std::unique_ptr<Observer> record_observables(std::shared_ptr<RunFile> file, double interval,
@@ -202,7 +192,7 @@ std::unique_ptr<Observer> record_resolving_power(std::shared_ptr<RunFile> file,
 }
 
 std::unique_ptr<Observer> record_checkpoints(std::shared_ptr<RunFile> file) {
-  return std::make_unique<Checkpoints>(std::move(file));
+  return std::make_unique<CheckpointRecorder<Observer>>(std::move(file));
 }
 
 } // namespace ehdjet

@@ -54,6 +54,16 @@ double ArrayConfig::phase(std::size_t j) const {
   return 2 * std::numbers::pi * static_cast<double>(j) / static_cast<double>(jets());
 }
 
+bool can_have_two_rates(const SceneConfig& c) {
+  const IntegratorConfig& i = c.integrator;
+  // Links that are cut at the end of the step in which they become too long need short steps.
+  const bool cuts_at_step_ends =
+      c.refinement && c.refinement->mesh == RefinedMesh::cut && !c.refinement->interval;
+  return (i.method == "auto" || i.method == "two-rate") && c.nozzle && c.coulomb && !c.array
+         && !has_images(c) && i.rtol && i.events == EventPlacement::located
+         && i.landings == LandingSteps::automatic && !cuts_at_step_ends;
+}
+
 bool has_near_field(const SceneConfig& c) {
   return c.coulomb && c.coulomb->near_field != NearFieldForm::point;
 }

@@ -48,6 +48,12 @@ std::optional<double> flight_time(const SceneConfig& c) {
   return (std::sqrt(v * v + 2 * a * c.collector->distance) - v) / a;
 }
 
+/// Beads and the images that act on them, over the beads (model 3.2).
+double sums_per_evaluation(const SceneConfig& c) {
+  if (!has_images(c)) return 1;
+  return c.collector->images == CollectorImages::plates ? 13 : 2;
+}
+
 std::string nozzle_text(const SceneConfig& c) {
   const NozzleConfig& n = *c.nozzle;
   std::string text;
@@ -142,11 +148,10 @@ std::string cost_text(const Scene& scene) {
     const CostModel& costs = scene.costs ? *scene.costs : CostModel::shipped();
     const std::string_view solver =
         s.solver == "auto" ? costs.cheapest(n, s.tolerance) : std::string_view(s.solver);
-    const bool two_rates =
-        !c.array && (c.integrator.method == "auto" || c.integrator.method == "two-rate");
-    text += fmt::format("  wall time     {:.2g} s on one core{}\n",
-                        evaluations * costs.cost(solver, n, s.tolerance),
-                        two_rates ? " if all steps had one rate; two rates take less" : "");
+    text += fmt::format(
+        "  wall time     {:.2g} s on one core{}\n",
+        evaluations * costs.cost(solver, n, s.tolerance) * sums_per_evaluation(c),
+        can_have_two_rates(c) ? " if all steps had one rate; two rates take less" : "");
   }
   if (c.output.frames) {
     constexpr double columns = 14; // place, velocity, stress, radius, contents, marks

@@ -137,10 +137,8 @@ double ArraySimulation::attempt_step(double h) {
     }
     h = next;
   }
-  ++statistics_.steps;
-  statistics_.shortest_step = std::min(statistics_.shortest_step, h);
-  statistics_.longest_step = std::max(statistics_.longest_step, h);
-  if (statistics_.method) note_method();
+  count_step(statistics_, h);
+  note_method(statistics_, integrator_->method_in_use(), time_);
   if (after_event_) restart_step_[*after_event_] = step_;
   after_event_.reset();
   return h;
@@ -153,14 +151,6 @@ void ArraySimulation::count_cost() {
     statistics_.coulomb_error = checks->last;
     statistics_.coulomb_violations = checks->violations;
   }
-}
-
-void ArraySimulation::note_method() {
-  MethodRecord& record = *statistics_.method;
-  const std::string_view now = integrator_->method_in_use();
-  if (now == record.in_use) return;
-  if (statistics_.steps > 1) ++record.changes; // the first one is no change
-  record.in_use = now, record.since = time_;
 }
 
 bool ArraySimulation::any_link_vanishes() {

@@ -309,8 +309,8 @@ void add_rheology(const SceneConfig& c, JetDynamics& dynamics) {
     const EvaporationConfig& e = *c.evaporation;
     return DryingFluid(modulus, relaxation,
                        {.solution = e.solution(),
-                        .exponent = e.viscosity_exponent,
-                        .power = e.viscosity_power});
+                        .exponent = e.viscosity_exponent.value_or(Thickening{}.exponent),
+                        .power = e.viscosity_power.value_or(Thickening{}.power)});
   };
   switch (f.model) {
   case Rheology::maxwell:
@@ -418,20 +418,6 @@ std::unique_ptr<CoulombSolver> build_solver(const Scene& scene) {
 std::shared_ptr<ForceTerm> build_coulomb(const Scene& scene) {
   if (!scene.config.coulomb) return nullptr;
   return std::make_shared<CoulombForce>(build_solver(scene));
-}
-
-/// Links are cut at the end of the step in which they become too long, which must be a short one then.
-bool cuts_at_step_ends(const SceneConfig& c) {
-  return c.refinement && c.refinement->mesh == RefinedMesh::cut && !c.refinement->interval;
-}
-
-/// Whether a scene can be simulated with two rates, and its own method allows it.
-bool may_use_two_rates(const SceneConfig& c, const Extras& extras) {
-  const IntegratorConfig& i = c.integrator;
-  return (i.method == "auto" || i.method == "two-rate") && c.nozzle && c.coulomb
-         && !has_images(c) && i.rtol && i.events == EventPlacement::located
-         && i.landings == LandingSteps::automatic && extras.forces.empty()
-         && !cuts_at_step_ends(c);
 }
 
 /// The inner beads as a simulation of their own, and the equations of motion of the others: the terms of
@@ -555,7 +541,7 @@ std::unique_ptr<Simulation> build_simulation(const Scene& scene, Extras extras) 
         "integrator.method = \"two-rate\" cannot be used with force terms that a "
         "program adds: they may couple beads that are far apart. Take \"auto\"");
   std::unique_ptr<TwoRate> two_rate;
-  if (may_use_two_rates(c, extras))
+  if (can_have_two_rates(c) && extras.forces.empty())
     two_rate = build_two_rate(scene, *dynamics, inflow, table, limits);
   auto simulation = std::make_unique<Simulation>(
       initial_jet(scene, table), std::move(dynamics), std::move(integrator), limits);

@@ -341,22 +341,12 @@ double Simulation::attempt_step(double h) {
     }
     h = next;
   }
-  ++statistics_.steps;
-  statistics_.shortest_step = std::min(statistics_.shortest_step, h);
-  statistics_.longest_step = std::max(statistics_.longest_step, h);
-  if (statistics_.method) note_method();
+  count_step(statistics_, h);
+  note_method(statistics_, two_rates_ ? two_rates : integrator_->method_in_use(),
+              jet_.time);
   if (after_event_) restart_step_[*after_event_] = step_;
   after_event_.reset();
   return h;
-}
-
-void Simulation::note_method() {
-  MethodRecord& record = *statistics_.method;
-  const std::string_view now = two_rates_ ? two_rates : integrator_->method_in_use();
-  if (now == record.in_use) return;
-  // What the first step was taken with is the start, not a change.
-  if (statistics_.steps > 1) ++record.changes;
-  record.in_use = now, record.since = jet_.time;
 }
 
 std::optional<std::size_t> Simulation::vanishing_link() const {

@@ -34,6 +34,20 @@ Ledger ledger_at_start(const JetState& jet) {
   return ledger;
 }
 
+void count_step(RunStatistics& statistics, double h) {
+  ++statistics.steps;
+  statistics.shortest_step = std::min(statistics.shortest_step, h);
+  statistics.longest_step = std::max(statistics.longest_step, h);
+}
+
+void note_method(RunStatistics& statistics, std::string_view in_use, double t) {
+  if (!statistics.method || in_use == statistics.method->in_use) return;
+  MethodRecord& record = *statistics.method;
+  // What the first step was taken with is the start, not a change.
+  if (statistics.steps > 1) ++record.changes;
+  record.in_use = in_use, record.since = t;
+}
+
 std::optional<FoundEvent> first_event(Events events, const DenseStep& step) {
   std::optional<FoundEvent> first;
   for (std::size_t i = 0; i < events.size(); ++i) {

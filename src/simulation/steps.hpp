@@ -13,6 +13,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 
 /// What the loops over steps of a jet and of an array have in common.
 namespace ehdjet {
@@ -56,6 +57,11 @@ struct FoundEvent {
   std::size_t index;
   double theta;
 };
+/// Counts an accepted step of length h [s].
+void count_step(RunStatistics& statistics, double h);
+/// Notes the method of a step that began at t [s], where the methods of a run change.
+void note_method(RunStatistics& statistics, std::string_view in_use, double t);
+
 /// The first of the events inside a step, of those at the same instant the first in their order.
 std::optional<FoundEvent> first_event(Events events, const DenseStep& step);
 /// When the next event may be expected after a step [s].

@@ -426,6 +426,20 @@ const Wrong wrong_scenes[] = {
      "[air]\n[evaporation]\nsolvent_density = 1300\npolymer_density = "
      "1200\npolymer_fraction = 0.1\ndiffusivity = 1.2e-5\nsaturation = 0.11\n[integrator]",
      {"s.toml:8: ", "nozzle.density = 840 kg/m^3", "1289 kg/m^3", "within 10 %"}},
+    {"thickening_of_an_inviscid_fluid",
+     "[viscoelasticity]\nelastic_modulus = 5e3\nviscosity = 2",
+     "[air]\n[evaporation]\nsolvent_density = 789\npolymer_density = "
+     "1200\npolymer_fraction = "
+     "0.1\ndiffusivity = 1.2e-5\nsaturation = 0.11\nviscosity_power = 0.2",
+     {"s.toml:24: ", "evaporation.viscosity_power = 0.2", "without [viscoelasticity]"}},
+    {"phases_of_nozzles_that_rest",
+     "[integrator]",
+     "[array]\nrows = 2\ncolumns = 1\nspacing = 0.01\nphases = \"spread\"\n[integrator]",
+     {"s.toml:26: ", "array.phases = \"spread\"", "nozzle.amplitude = 0 m"}},
+    {"inner_beads_where_every_landing_ends_a_step",
+     "rtol = 1e-5",
+     "rtol = 1e-5\nlandings = \"located\"\ninner_beads = 30",
+     {"s.toml:25: ", "integrator.inner_beads", "landings = \"auto\""}},
     {"humidity_in_percent",
      "[integrator]",
      "[air]\n[evaporation]\nsolvent_density = 789\npolymer_density = "

@@ -23,17 +23,6 @@ Scene jet_in_air(const std::string& method, double rtol_or_step,
   return scene;
 }
 
-double largest_distance(const JetState& a, const JetState& b) {
-  EXPECT_EQ(a.beads(), b.beads());
-  if (a.beads() != b.beads()) return std::nan("");
-  double largest = 0;
-  for (std::size_t k = 0; k < a.beads(); ++k) {
-    const double d = (a.columns().position()[k] - b.columns().position()[k]).norm();
-    largest = d <= largest ? largest : d;
-  }
-  return largest;
-}
-
 double order(const std::string& method, double longest, int count) {
   constexpr double end = 5e-4; // five releases
   const JetState exact = run(jet_in_air("dop853", 1e-13), end)->jet();

@@ -13,6 +13,7 @@
 
 #include "support/allocations.hpp"
 #include "support/pumped.hpp"
+#include "support/quiet_steps.hpp"
 #include "support/refined.hpp"
 
 // Several jets that repel each other (model 9).
@@ -340,20 +341,7 @@ TEST(Array, allocates_nothing_in_a_step_while_its_chains_stay) {
   for (const char* method : {"dormand-prince", "ros34pw2"}) {
     const auto simulation = build_array_simulation(
         array_of(case_one(method, 1e-6), 1, 2, 0.01, ArrayPhases::spread));
-    std::size_t before = 0, allocated = 0;
-    long steps = 0, since_event = 0;
-    std::uint64_t events = 0;
-    simulation->after_each_step([&](const ArraySimulation& s) {
-      // The step after an event meets a chain of another size.
-      const std::uint64_t now = s.statistics().insertions + s.statistics().releases;
-      since_event = now == events ? since_event + 1 : 0;
-      events = now;
-      if (since_event > 1) allocated += allocations() - before, ++steps;
-      before = allocations();
-    });
-    simulation->run_until(1e-3);
-    EXPECT_GT(steps, 30) << method;
-    EXPECT_EQ(allocated, 0U) << method;
+    expect_quiet_steps(*simulation, method);
   }
 }
 

@@ -18,17 +18,6 @@ JetState jet_after(const Scene& scene) {
   return run(scene, end)->jet();
 }
 
-double largest_distance(const JetState& a, const JetState& b) {
-  EXPECT_EQ(a.beads(), b.beads());
-  if (a.beads() != b.beads()) return std::nan("");
-  double largest = 0;
-  for (std::size_t k = 0; k < a.beads(); ++k) {
-    const double d = (a.columns().position()[k] - b.columns().position()[k]).norm();
-    largest = d <= largest ? largest : d;
-  }
-  return largest;
-}
-
 /// Observed order over steps from `longest` downwards by factors of sqrt 2, across insertions.
 double order(const std::string& method, double longest, int count,
              EventPlacement placement) {

@@ -35,16 +35,6 @@ std::span<const double> evaporated(const JetState& jet) {
   return jet.columns().column(*jet.table->find_integrated(Evaporation::column));
 }
 
-double largest_distance(const JetState& a, const JetState& b) {
-  EXPECT_EQ(a.beads(), b.beads());
-  if (a.beads() != b.beads()) return std::nan("");
-  double largest = 0;
-  for (std::size_t k = 0; k < a.beads(); ++k)
-    largest =
-        std::max(largest, (a.columns().position()[k] - b.columns().position()[k]).norm());
-  return largest;
-}
-
 TEST(DryingJet, loses_solvent_on_its_way_and_never_more_than_it_has) {
   const Scene scene = drying_jet("dormand-prince", 1e-6);
   const JetState jet = run(scene, 12e-3)->jet();

@@ -12,22 +12,6 @@ namespace {
 
 using namespace test;
 
-/// A straight jet onto a plate 2 m away: the second example of the reference code.
-Scene straight_jet() {
-  Scene s;
-  s.config.nozzle = NozzleConfig{.radius = 1.5e-4,
-                                 .link_length = 1e-3,
-                                 .velocity = 0,
-                                 .density = 818.912288,
-                                 .charge_density = 1.2546226};
-  s.config.collector = CollectorConfig{.distance = 2};
-  s.config.field = FieldConfig{.potential = 83286.55, .strength = {}};
-  s.config.coulomb = CoulombConfig{};
-  s.config.viscoelasticity = ViscoelasticityConfig{1000, 10};
-  integrate(s, "dormand-prince", 1e-5);
-  return s;
-}
-
 // What the reference code prints in the stationary state.
 TEST(GroundedCollector, lets_a_straight_jet_land_bead_by_bead) {
   auto simulation = build_simulation(straight_jet());

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "support/allocations.hpp"
+#include "support/quiet_steps.hpp"
 #include "support/scenes.hpp"
 
 namespace ehdjet {
@@ -112,20 +113,7 @@ TEST(Simulation, a_step_allocates_nothing_while_the_chain_stays) {
   for (const std::string& method : methods) {
     if (method == "auto") continue;
     auto simulation = build_simulation(case_one(method, suitable(method)));
-    std::size_t before = 0, allocated = 0;
-    long steps = 0, since_event = 0;
-    std::uint64_t events = 0;
-    simulation->after_each_step([&](const Simulation& s) {
-      // The step after an event meets a chain of another size.
-      const std::uint64_t now = s.statistics().insertions + s.statistics().releases;
-      since_event = now == events ? since_event + 1 : 0;
-      events = now;
-      if (since_event > 1) allocated += allocations() - before, ++steps;
-      before = allocations();
-    });
-    simulation->run_until(1e-3);
-    EXPECT_GT(steps, 30) << method;
-    EXPECT_EQ(allocated, 0U) << method;
+    expect_quiet_steps(*simulation, method);
   }
 }
 

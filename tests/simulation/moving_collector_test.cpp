@@ -90,25 +90,9 @@ TEST(MovingCollector, takes_the_landed_bead_along) {
   EXPECT_LE((deposit[0].bead.position - Vec3(h, 1e-3, 0.5e-3)).norm(), 1e-15);
 }
 
-/// A straight jet onto a plate 30 cm away.
-Scene straight_jet() {
-  Scene s;
-  s.config.nozzle = NozzleConfig{.radius = 1.5e-4,
-                                 .link_length = 1e-3,
-                                 .velocity = 0,
-                                 .density = 818.912288,
-                                 .charge_density = 1.2546226};
-  s.config.collector = CollectorConfig{.distance = 0.3};
-  s.config.field = FieldConfig{.potential = 0.15 * 83286.55, .strength = {}};
-  s.config.coulomb = CoulombConfig{};
-  s.config.viscoelasticity = ViscoelasticityConfig{1000, 10};
-  integrate(s, "dormand-prince", 1e-5);
-  return s;
-}
-
 // pitch = U/rate
 TEST(MovingCollector, spreads_a_straight_jet_by_velocity_over_rate) {
-  Scene scene = straight_jet();
+  Scene scene = straight_jet(0.3);
   move_collector(scene, {0, 0, 0.3});
   const auto deposit = deposit_of(scene, 0.4);
   ASSERT_GE(deposit.size(), 60U);

@@ -182,6 +182,34 @@ inline std::unique_ptr<Simulation> run(const Scene& scene, double end_time) {
   return simulation;
 }
 
+/// Largest distance of a bead from the same bead of another jet [m]; no number if their numbers differ.
+inline double largest_distance(const JetState& a, const JetState& b) {
+  if (a.beads() != b.beads()) return std::nan("");
+  double largest = 0;
+  for (std::size_t k = 0; k < a.beads(); ++k) {
+    const double d = (a.columns().position()[k] - b.columns().position()[k]).norm();
+    largest = d <= largest ? largest : d; // a NaN stays
+  }
+  return largest;
+}
+
+/// A straight jet onto a plate, of the fluid and in the field of the reference code's second example, whose
+/// plate is 2 m away.
+inline Scene straight_jet(double distance = 2) {
+  Scene s;
+  s.config.nozzle = NozzleConfig{.radius = 1.5e-4,
+                                 .link_length = 1e-3,
+                                 .velocity = 0,
+                                 .density = 818.912288,
+                                 .charge_density = 1.2546226};
+  s.config.collector = CollectorConfig{.distance = distance};
+  s.config.field = FieldConfig{.potential = distance / 2 * 83286.55, .strength = {}};
+  s.config.coulomb = CoulombConfig{};
+  s.config.viscoelasticity = ViscoelasticityConfig{1000, 10};
+  integrate(s, "dormand-prince", 1e-5);
+  return s;
+}
+
 /// Least-squares slope of log(error) over log(step): an observed order.
 inline double observed_order(const std::vector<double>& steps,
                              const std::vector<double>& errors) {

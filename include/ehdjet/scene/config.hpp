@@ -194,8 +194,8 @@ struct EvaporationConfig {
   double humidity = 0;                                           ///< phi [-]
   double solid_fraction = 0.9;                                   ///< c_solid [-]
   double still_air_sherwood = Vaporisation{}.still_air_sherwood; ///< [-]
-  double viscosity_exponent = Thickening{}.exponent;             ///< B [-]
-  double viscosity_power = Thickening{}.power;                   ///< m [-]
+  std::optional<double> viscosity_exponent;                      ///< B [-]
+  std::optional<double> viscosity_power;                         ///< m [-]
   bool operator==(const EvaporationConfig&) const = default;
 
   [[nodiscard]] Solution solution() const {
@@ -303,6 +303,8 @@ struct SceneConfig {
 /// Whether the charge in a pump's nozzle acts on the jet: its plate would screen it (model 3.2).
 [[nodiscard]] bool has_nozzle_charge(const SceneConfig& config);
 [[nodiscard]] bool has_images(const SceneConfig& config);
+/// Whether a scene can be simulated with two rates, and its method allows it (model 6.1).
+[[nodiscard]] bool can_have_two_rates(const SceneConfig& config);
 [[nodiscard]] bool has_near_field(const SceneConfig& config);
 /// Whether pairs of close charges are softened (model 3.1).
 [[nodiscard]] bool softens_pairs(const SceneConfig& config);

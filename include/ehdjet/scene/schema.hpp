@@ -402,8 +402,10 @@ void describe(V& v, EvaporationConfig& c) {
              "Sherwood number of a jet that moves with the air");
   v.optional(
       "viscosity_exponent", c.viscosity_exponent, between("-", 0, 50),
-      "B of the viscosity mu_0 10^(B (c^m - c_0^m)); the relaxation time grows like c");
-  v.optional("viscosity_power", c.viscosity_power, positive("-", 10), "m of the viscosity");
+      "B of the viscosity mu_0 10^(B (c^m - c_0^m)); the relaxation time grows like c",
+      "7 with [viscoelasticity]");
+  v.optional("viscosity_power", c.viscosity_power, positive("-", 10), "m of the viscosity",
+             "0.1 with [viscoelasticity]");
 }
 
 template <class V>

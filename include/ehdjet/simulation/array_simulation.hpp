@@ -72,7 +72,6 @@ private:
   double choose_step();
   double attempt_step(double h);
   void count_cost();
-  void note_method();
   [[nodiscard]] bool any_link_vanishes();
   void advance(double h, double end_time);
   [[nodiscard]] RowsOfStep part_of_step(std::size_t j, double h) const;

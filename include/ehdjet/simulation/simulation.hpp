@@ -80,7 +80,6 @@ private:
   void advance(double h, double end_time);
   void advance(const DenseStep& step, double end_time);
   void commit();
-  void note_method();
   [[nodiscard]] std::optional<std::size_t> vanishing_link() const;
   [[noreturn]] void fail_at_link(double h, std::size_t bead);
   void show_until(const DenseStep& step, double end);
