@@ -3,11 +3,17 @@
 #include "ehdjet/core/csv_table.hpp"
 #include "ehdjet/core/error.hpp"
 
+#include <cerrno>
+#include <cstring>
 #include <fmt/format.h>
+#include <fstream>
 
 namespace ehdjet {
 
 AirProfile read_air_profile(const std::filesystem::path& file) {
+  if (const std::ifstream in(file); !in || std::filesystem::is_directory(file))
+    throw InputError(fmt::format("cannot read the wind {} (air.profile): {}", file.string(),
+                                 in ? "it is a folder" : std::strerror(errno)));
   CsvTable table(file, {"x_m", "ux_m_s", "uy_m_s", "uz_m_s"}, {});
   AirProfile profile;
   while (table.next_row()) {

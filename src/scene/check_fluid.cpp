@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "cross_check_parts.hpp"
+#include "key_description.hpp"
 
 namespace ehdjet {
 namespace {
@@ -97,8 +98,9 @@ private:
       refuse(key, fmt::format("viscoelasticity.{} = {}{} has no meaning with {}. Remove it",
                               key, *value, unit, model_));
     if (!value && needed)
-      refuse(key, fmt::format("viscoelasticity.{} is missing: it is needed with {}", key,
-                              model_));
+      refuse(key,
+             fmt::format("viscoelasticity.{} is missing: it is needed with {}; {}", key,
+                         model_, key_description(fmt::format("viscoelasticity.{}", key))));
   }
   [[noreturn]] void refuse(const char* key, const std::string& why) const {
     text_.fail(fmt::format("viscoelasticity.{}", key), why);

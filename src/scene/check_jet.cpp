@@ -4,6 +4,7 @@
 #include <string>
 
 #include "cross_check_parts.hpp"
+#include "key_description.hpp"
 
 namespace ehdjet {
 namespace {
@@ -13,7 +14,8 @@ template <class Refuse, class T>
 void need(const Refuse& refuse, const char* key, const std::optional<T>& value,
           const char* with) {
   if (!value)
-    refuse("", fmt::format("nozzle.{} is missing: it is needed with {}", key, with));
+    refuse("", fmt::format("nozzle.{} is missing: it is needed with {}; {}", key, with,
+                           key_description(fmt::format("nozzle.{}", key))));
 }
 template <class Refuse, class T>
 void exclude(const Refuse& refuse, const char* key, const std::optional<T>& value,
@@ -146,7 +148,8 @@ void check_waveform(const SceneConfig& c, const SceneText& text) {
   const auto check = [&](const char* key, const std::optional<double>& value,
                          const char* unit, FieldWaveform its) {
     if (waveform == its && !value)
-      text.fail("field", fmt::format("field.{} is missing: it is needed with {}", key, is));
+      text.fail("field", fmt::format("field.{} is missing: it is needed with {}; {}", key,
+                                     is, key_description(fmt::format("field.{}", key))));
     if (waveform != its && value)
       text.fail(fmt::format("field.{}", key),
                 fmt::format("field.{} = {} {} has no meaning with {}: it needs waveform = "

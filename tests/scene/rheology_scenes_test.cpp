@@ -147,7 +147,8 @@ const Wrong wrong_models[] = {
      {"viscoelasticity.solvent_viscosity = 0.1 Pa s has no meaning with"}},
     {"no_extensibility",
      model("fene-p"),
-     {"viscoelasticity.extensibility is missing: it is needed with"}},
+     {"viscoelasticity.extensibility is missing: it is needed with", "greater than 3",
+      "L2"}},
     {"too_short_springs",
      model("fene-p", fluid + "extensibility = 3\n"),
      {"s.toml:21: viscoelasticity.extensibility = 3: must be greater than 3 and at most "

@@ -296,7 +296,8 @@ const Wrong wrong_scenes[] = {
     {"square_wave_without_frequency",
      "potential = 9000",
      "potential = 9000\nwaveform = \"square\"",
-     {"s.toml:", "field.frequency is missing", "field.waveform = \"square\""}},
+     {"s.toml:", "field.frequency is missing", "field.waveform = \"square\"",
+      "greater than 0", "1/s"}},
     {"time_constant_of_a_constant_field",
      "potential = 9000",
      "potential = 9000\ntime_constant = 1e-3",
@@ -492,6 +493,12 @@ TEST(WrongScenes, a_missing_file_is_named_with_the_reason) {
   expect_all(complaint([] { read_scene("no/such/scene.toml"); }),
              {"no/such/scene.toml", "No such file"});
   expect_all(complaint([] { read_scene("/"); }), {"it is a folder"});
+}
+
+TEST(WrongScenes, a_missing_wind_is_named_with_its_key) {
+  expect_all(complaint_about(good_scene_but("[integrator]",
+                                            "[air]\nprofile = \"none.csv\"\n[integrator]")),
+             {"none.csv", "air.profile", "No such file"});
 }
 
 TEST(WrongScenes, a_missing_chain_file_is_named_with_its_key) {

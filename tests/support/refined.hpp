@@ -43,16 +43,6 @@ struct RefinedRun {
   std::unique_ptr<Simulation> simulation;
 };
 
-/// Of any bead from the same bead of the other jet; not a number if they have not as many [m].
-inline double largest_distance(const JetState& a, const JetState& b) {
-  if (a.beads() != b.beads()) return std::nan("");
-  double largest = 0;
-  for (std::size_t k = 0; k < a.beads(); ++k)
-    largest =
-        std::max(largest, (a.columns().position()[k] - b.columns().position()[k]).norm());
-  return largest;
-}
-
 inline double path_length_of(const JetState& jet) {
   const auto r = jet.columns().position();
   double length = 0;

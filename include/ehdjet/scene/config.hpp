@@ -194,8 +194,8 @@ struct EvaporationConfig {
   double humidity = 0;                                           ///< phi [-]
   double solid_fraction = 0.9;                                   ///< c_solid [-]
   double still_air_sherwood = Vaporisation{}.still_air_sherwood; ///< [-]
-  std::optional<double> viscosity_exponent;                      ///< B [-]
-  std::optional<double> viscosity_power;                         ///< m [-]
+  std::optional<double> viscosity_exponent = {};                 ///< B [-]
+  std::optional<double> viscosity_power = {};                    ///< m [-]
   bool operator==(const EvaporationConfig&) const = default;
 
   [[nodiscard]] Solution solution() const {

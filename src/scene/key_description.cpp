@@ -1,0 +1,51 @@
+#include "key_description.hpp"
+
+#include "ehdjet/core/error.hpp"
+#include "ehdjet/scene/schema.hpp"
+
+#include <fmt/format.h>
+#include <optional>
+
+namespace ehdjet {
+namespace {
+
+/// Schema visitor: finds one key.
+struct Lookup {
+  std::string_view path;
+  std::string prefix, found;
+
+  template <class T, class Allowed>
+  void required(std::string_view name, T&, const Allowed& allowed,
+                std::string_view meaning) {
+    if (prefix + std::string(name) == path)
+      found = fmt::format("must be {} ({})", allowed_text(allowed), meaning);
+  }
+  template <class T, class Allowed>
+  void optional(std::string_view name, T& value, const Allowed& allowed,
+                std::string_view meaning, std::string_view = {}) {
+    required(name, value, allowed, meaning);
+  }
+  template <class Config>
+  void table(std::string_view name, std::optional<Config>& config,
+             std::string_view meaning) {
+    table(name, config.emplace(), meaning);
+  }
+  template <class Config>
+  void table(std::string_view name, Config& config, std::string_view) {
+    prefix = std::string(name) + '.';
+    describe(*this, config);
+    prefix.clear();
+  }
+};
+
+} // namespace
+
+std::string key_description(std::string_view path) {
+  Lookup lookup{.path = path, .prefix = {}, .found = {}};
+  SceneConfig any;
+  describe(lookup, any);
+  EHDJET_EXPECTS(!lookup.found.empty());
+  return lookup.found;
+}
+
+} // namespace ehdjet
