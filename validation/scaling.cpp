@@ -49,7 +49,7 @@ Timed timed(const Scene& scene, const Window& window, std::size_t threads) {
       });
   t.run.statistics = run.statistics;
   t.seconds = run.statistics.wall_time;
-  t.beads_before = run.beads_before;
+  t.beads_before = run.links_before;
   return t;
 }
 

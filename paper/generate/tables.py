@@ -119,7 +119,7 @@ def readme_table2(run: RunFolder) -> str:
     about = [f"{key}: {answer}" for key in ("date", "processor", "simd", "commit")
              if (answer := table.comments.get(key))]
     lines = [
-        "| L~ | solver | rates | threads | beads | beads, paper | time | time, paper (24 cores) | gain "
+        "| L~ | solver | rates | threads | links | beads, paper | time | time, paper (24 cores) | gain "
         "| error of the path length |",
         "|---|---|---|---|---|---|---|---|---|---|",
     ]

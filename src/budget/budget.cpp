@@ -125,6 +125,22 @@ void Budget::after_event(const Event& event, const JetState& jet) {
   sums_[balance_.channel(event.channel().name)].add(balance_.jump(before_, jet), 1);
 }
 
+void Budget::archive(const Archive& a) {
+  const Archive own = a.part("balance");
+  if (a.is_reading() && own.names().empty()) return;
+  bool started = start_.has_value();
+  own("started", started);
+  JetEnergies start = start_.value_or(JetEnergies{});
+  own("kinetic", start.kinetic), own("stored", start.stored);
+  own("momentum_x", start.momentum.x()), own("momentum_y", start.momentum.y());
+  own("momentum_z", start.momentum.z()), own("momentum_size", start.momentum_size);
+  if (started && start.stored.size() != balance_.stores().size())
+    throw InputError("the checkpoint is damaged: its energies are those of another scene");
+  if (started) start_ = start;
+  for (std::size_t c = 0; c < sums_.size(); ++c)
+    sums_[c].archive(own.part(balance_.channels()[c].name));
+}
+
 void Budget::measure(const JetSnapshot& snapshot, std::span<double> row) {
   EHDJET_EXPECTS(row.size() == columns_.size());
   if (step_ != nullptr)

@@ -1,4 +1,5 @@
 #include "ehdjet/core/error.hpp"
+#include "ehdjet/core/thread_count.hpp"
 #include "ehdjet/io/text_output.hpp"
 #include "ehdjet/studies/table2.hpp"
 
@@ -15,6 +16,8 @@
 #include "interrupt.hpp"
 #include "options.hpp"
 #include "progress.hpp"
+#include "scenes.hpp"
+#include "standard_streams.hpp"
 #include "version.hpp"
 
 namespace ehdjet::cli {
@@ -22,7 +25,7 @@ namespace {
 
 struct BenchOptions {
   std::vector<std::string> rows, overrides;
-  std::string scenes = "scenes", output = "table2";
+  std::string scenes, output = "table2";
   std::optional<double> time, rtol, stationary_from;
   std::optional<std::string> solver, method;
   std::optional<std::size_t> threads;
@@ -62,7 +65,7 @@ struct Row {
   }
 };
 
-/// Exponent of the time per millisecond in the number of beads, between the first and the last row
+/// Exponent of the time per millisecond in the number of links, between the first and the last row
 /// that refines; none with fewer than two.
 std::optional<double> growth(const std::vector<Row>& rows, std::string_view rates) {
   const Row *first = nullptr, *last = nullptr;
@@ -73,7 +76,7 @@ std::optional<double> growth(const std::vector<Row>& rows, std::string_view rate
     return std::log(r.per_ms(r.parallel.statistics.wall_time));
   };
   return (cost(*last) - cost(*first))
-         / std::log(last->parallel.stationary_beads / first->parallel.stationary_beads);
+         / std::log(last->parallel.stationary_links / first->parallel.stationary_links);
 }
 
 std::string number(std::optional<double> value, int digits) {
@@ -82,14 +85,14 @@ std::string number(std::optional<double> value, int digits) {
 
 void write_csv(TextOutput& out, const std::vector<Row>& rows, std::size_t threads) {
   out.print(
-      "refinement_length_cm,rates,simulated_s,beads_mean,beads_stationary,beads_before_"
+      "refinement_length_cm,rates,simulated_s,links_mean,links_stationary,links_before_"
       "refinement,threads,wall_1_s,wall_s,efficiency,evaluations,full_sums,paper_beads,"
       "paper_threads,paper_wall_s,paper_efficiency\n");
   for (const Row& r : rows) {
     const Table2Run& m = r.parallel;
     out.print("{},{},{},{:.3f},{:.3f},{},{},{},{:.3f},{},{},{:.0f},",
               r.paper->length == 0 ? "" : r.paper->name, r.rates == "one" ? 1 : 2,
-              r.end_time, m.mean_beads, m.stationary_beads, number(m.beads_before, 3),
+              r.end_time, m.mean_links, m.stationary_links, number(m.links_before, 3),
               threads, r.serial ? number(r.serial->statistics.wall_time, 3) : "",
               m.statistics.wall_time, number(r.efficiency(threads), 4),
               m.statistics.evaluations, r.full_sums());
@@ -104,7 +107,7 @@ void write_csv(TextOutput& out, const std::vector<Row>& rows, std::size_t thread
 
 std::string markdown(const std::vector<Row>& rows, std::size_t threads) {
   std::string text = fmt::format(
-      "| L~ (cm) | rates | simulated (s) | beads, mean | stationary | before refining "
+      "| L~ (cm) | rates | simulated (s) | links, mean | stationary | before refining "
       "| wall, 1 thread (s) | wall, {} threads (s) | eta | Coulomb sums per ms | ms per "
       "simulated ms | paper: beads | wall, 24 cores (s) | eta |\n"
       "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n",
@@ -114,8 +117,8 @@ std::string markdown(const std::vector<Row>& rows, std::size_t threads) {
     text +=
         fmt::format("| {} | {} | {} | {:.1f} | {:.1f} | {} | {} | {:.2f} | {} | {:.0f} | "
                     "{:.2f} | ",
-                    r.paper->name, r.rates, r.end_time, m.mean_beads, m.stationary_beads,
-                    number(m.beads_before, 1),
+                    r.paper->name, r.rates, r.end_time, m.mean_links, m.stationary_links,
+                    number(m.links_before, 1),
                     r.serial ? number(r.serial->statistics.wall_time, 2) : "",
                     m.statistics.wall_time, number(r.efficiency(threads), 2),
                     r.per_ms(r.full_sums()), 1e3 * r.per_ms(m.statistics.wall_time));
@@ -124,18 +127,20 @@ std::string markdown(const std::vector<Row>& rows, std::size_t threads) {
                                     : " | | |\n";
   }
   for (const std::string_view rates : {"one", "two"}) {
-    double wall = 0, paper = 0;
+    double wall = 0, paper = 0, end_time = 0;
     for (const Row& r : rows)
       if (r.rates == rates && r.paper->is_published())
-        wall += r.parallel.statistics.wall_time, paper += r.paper->wall;
+        wall += r.parallel.statistics.wall_time, paper += r.paper->wall,
+            end_time = r.end_time;
     if (wall == 0) continue;
     text += fmt::format(
-        "\n{} rate{}: the rows of the paper took {:.1f} s on {} threads, there "
-        "{:.0f} s on 24 cores.",
-        rates == "one" ? "One" : "Two", rates == "one" ? "" : "s", wall, threads, paper);
+        "\n{} rate{}: the rows of the paper took {:.1f} s on {} thread{} for {:g} s, there "
+        "{:.0f} s on 24 cores for 0.2 s.",
+        rates == "one" ? "One" : "Two", rates == "one" ? "" : "s", wall, threads,
+        threads == 1 ? "" : "s", end_time, paper);
     if (const auto exponent = growth(rows, rates))
       text += fmt::format(
-          " The time per simulated ms grows with the beads to the power {:.2f}.",
+          " The time per simulated ms grows with the links to the power {:.2f}.",
           *exponent);
     text += "\n";
   }
@@ -167,8 +172,11 @@ Scene scene_of(const BenchOptions& options, const Table2Row& row, std::string_vi
                  "coulomb.solver=\"auto\""};
   std::ranges::move(overrides_of(options), std::back_inserter(overrides)); // these count
   if (rates == "two") overrides.emplace_back("integrator.method=\"two-rate\"");
-  Scene scene = read_scene(
-      std::filesystem::path(options.scenes) / fmt::format("{}.toml", row.scene), overrides);
+  const std::string name = fmt::format("{}.toml", row.scene);
+  Scene scene =
+      read_scene(options.scenes.empty() ? find_scene(name)
+                                        : std::filesystem::path(options.scenes) / name,
+                 overrides);
   const std::string& method = scene.config.integrator.method;
   if (rates == "one" && (method == "auto" || method == "two-rate"))
     throw InputError(
@@ -185,9 +193,9 @@ Row run_job(const BenchOptions& options, const Job& job, std::size_t threads) {
   const auto run = [&](std::size_t p) {
     std::optional<Progress> progress;
     if (!options.quiet) {
-      fmt::print(stderr, "L~ = {}{}, {} rate{}, {} thread{}, {} s\n", job.row->name,
-                 job.row->length == 0 ? "" : " cm", job.rates,
-                 job.rates == "one" ? "" : "s", p, p == 1 ? "" : "s", end);
+      message("L~ = {}{}, {} rate{}, {} thread{}, {} s\n", job.row->name,
+              job.row->length == 0 ? "" : " cm", job.rates, job.rates == "one" ? "" : "s",
+              p, p == 1 ? "" : "s", end);
       progress.emplace(0.0, end);
     }
     const InterruptGuard interrupt;
@@ -221,8 +229,9 @@ void bench_table2(const BenchOptions& options) {
         jobs.push_back({row, rates, scene_of(options, *row, rates)});
   TextOutput csv(options.output + ".csv", options.force);
   TextOutput table(options.output + ".md", options.force);
-  const std::size_t threads =
-      options.threads.value_or(static_cast<std::size_t>(omp_get_max_threads()));
+  warn_of_threads(options.threads);
+  const std::size_t threads = granted_threads(
+      options.threads.value_or(static_cast<std::size_t>(omp_get_max_threads())));
 
   std::vector<Row> rows;
   rows.reserve(jobs.size());
@@ -231,7 +240,7 @@ void bench_table2(const BenchOptions& options) {
   const std::string text = markdown(rows, threads);
   table.print("{}\n{}\n", text, provenance());
   table.close();
-  fmt::print("{}\nwritten to {}.csv and {}.md\n", text, options.output, options.output);
+  print_result("{}\nwritten to {}.csv and {}.md\n", text, options.output, options.output);
 }
 
 } // namespace
@@ -255,7 +264,8 @@ void add_bench_command(CLI::App& app) {
       ->check(CLI::IsMember(names));
   command
       ->add_option("--time", options->time, "Simulated time [s]; default: the scene's, 0.2")
-      ->type_name("T");
+      ->type_name("T")
+      ->check(finite_number());
   command->add_option("--rtol", options->rtol, "Tolerance of the integrator");
   command->add_option("--solver", options->solver, "Coulomb solver");
   command->add_option("--method", options->method, "Integrator of the runs with one rate");
@@ -274,9 +284,11 @@ void add_bench_command(CLI::App& app) {
   command
       ->add_option("--stationary-from", options->stationary_from,
                    "Start of the stationary means [s]; default: 0.035 or half of the run")
-      ->type_name("T");
-  command->add_option("--scenes", options->scenes, "Folder with table2_none.toml, ...")
-      ->capture_default_str();
+      ->type_name("T")
+      ->check(finite_number());
+  command->add_option("--scenes", options->scenes,
+                      "Folder with table2_none.toml, ...; default: the scenes that `ehdjet "
+                      "scenes` lists");
   command->add_option("-o,--output", options->output, "Writes OUTPUT.csv and OUTPUT.md")
       ->capture_default_str();
   command->add_flag("--quiet", options->quiet, "No progress");

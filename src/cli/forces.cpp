@@ -7,9 +7,12 @@
 #include "ehdjet/scene/calibration_file.hpp"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
+#include <cmath>
 #include <fmt/format.h>
 #include <functional>
+#include <iostream>
 #include <map>
 #include <memory>
 #include <numeric>
@@ -17,6 +20,7 @@
 
 #include "commands.hpp"
 #include "options.hpp"
+#include "standard_streams.hpp"
 
 namespace ehdjet::cli {
 namespace {
@@ -27,7 +31,7 @@ struct ForcesOptions {
   ToleranceNorm norm = ToleranceNorm::global;
   std::optional<std::size_t> threads;
   int repeat = 1;
-  bool force = false;
+  bool check = true, force = false;
 };
 
 struct Charges {
@@ -35,14 +39,28 @@ struct Charges {
   [[nodiscard]] ConstVec3View positions() const { return {x, y, z}; }
 };
 
+/// `file`: "-" is the standard input.
 Charges read_charges(const std::string& file) {
-  Charges c;
-  CsvTable table(file, {"x", "y", "z", "q"}, {});
-  while (table.next_row()) {
-    c.x.push_back(table.value(0)), c.y.push_back(table.value(1));
-    c.z.push_back(table.value(2)), c.q.push_back(table.value(3));
+  // Each column by its short name or by that in the CSV files that ehdjet exports.
+  const std::vector<std::string> names{"x", "y", "z", "q", "x_m", "y_m", "z_m", "charge_c"};
+  const std::string shown = file == "-" ? "standard input" : file;
+  const auto table =
+      file == "-"
+          ? std::make_unique<CsvTable>(std::cin, shown, std::vector<std::string>(), names)
+          : std::make_unique<CsvTable>(file, std::vector<std::string>(), names);
+  std::array<std::size_t, 4> place{};
+  for (std::size_t c = 0; c < place.size(); ++c) {
+    place[c] = table->has(c) ? c : c + place.size();
+    if (!table->has(place[c]))
+      table->refuse(1, fmt::format("column {} (or {}) is missing from the header", names[c],
+                                   names[c + place.size()]));
   }
-  if (c.q.empty()) throw InputError(file + ": no charges");
+  Charges c;
+  while (table->next_row()) {
+    c.x.push_back(table->value(place[0])), c.y.push_back(table->value(place[1]));
+    c.z.push_back(table->value(place[2])), c.q.push_back(table->value(place[3]));
+  }
+  if (c.q.empty()) throw InputError(shown + ": no charges");
   return c;
 }
 
@@ -70,8 +88,7 @@ void warn_of_the_strongest(ConstVec3View force) {
   const double strong = std::accumulate(square.begin(), weaker, 0.0),
                all = std::accumulate(weaker, square.end(), strong);
   if (strong > nearly_all * all)
-    fmt::print(
-        stderr,
+    message(
         "ehdjet: {} of {} charges have {:.3g} % of |F|^2, to which the tolerance refers. "
         "The relative error of the force on the others may be larger. --norm per-bead "
         "keeps "
@@ -79,7 +96,24 @@ void warn_of_the_strongest(ConstVec3View force) {
         few, square.size(), 100 * strong / all);
 }
 
+std::string json(double number) {
+  return std::isfinite(number) ? fmt::format("{:.6g}", number) : "null";
+}
+
+/// Compares with the direct sum on some charges, and says what the comparison shows.
+CoulombErrorSample checked(const CoulombSolver& solver, const PointCharges& charges,
+                           ConstVec3View force) {
+  const auto [tolerance, norm] = solver.accuracy();
+  const CoulombErrorSample sample = sampled_error(charges, force, norm);
+  if (!(sample.in(norm) <= tolerance))
+    message("warning: the error of the force, {:.2g}, is above the tolerance {:g}\n",
+            sample.in(norm), tolerance);
+  if (norm == ToleranceNorm::global) warn_of_the_strongest(force);
+  return sample;
+}
+
 void forces(const ForcesOptions& options) {
+  warn_of_threads(options.threads);
   const ThreadCount threads(options.threads);
   SolverOptions solver_options{.solver = options.solver, .norm = options.norm};
   if (options.tolerance) solver_options.tolerance = *options.tolerance;
@@ -88,7 +122,11 @@ void forces(const ForcesOptions& options) {
   const auto solver = make_coulomb_solver(solver_options);
   const Charges c = read_charges(options.beads);
   std::optional<TextOutput> output; // refuses an existing file before the work
-  if (!options.output.empty()) output.emplace(options.output, options.force);
+  if (!options.output.empty()) {
+    refuse_input(options.output, options.calibration);
+    output.emplace(options.output, options.force,
+                   options.beads == "-" ? "/dev/stdin" : options.beads);
+  }
 
   const std::size_t n = c.q.size();
   std::vector<double> fx(n), fy(n), fz(n), seconds;
@@ -102,27 +140,31 @@ void forces(const ForcesOptions& options) {
   }
   const double peak = peak_mib();
   if (solver->coincident_pairs() > 0)
-    fmt::print(stderr, "ehdjet: {} pairs of charges at zero distance were skipped\n",
-               solver->coincident_pairs());
+    message("ehdjet: {} pairs of charges at zero distance were skipped\n",
+            solver->coincident_pairs());
 
-  CoulombErrorSample error; // 0 for the direct sum, which is the reference
-  if (solver->name() != "direct") {
-    error = sampled_error({c.positions(), c.q}, force, options.norm);
-    if (options.norm == ToleranceNorm::global) warn_of_the_strongest(force);
+  std::string errors; // 0 for the direct sum, which is the reference
+  if (options.check) {
+    const CoulombErrorSample error = solver->name() == "direct"
+                                         ? CoulombErrorSample{}
+                                         : checked(*solver, {c.positions(), c.q}, force);
+    errors = fmt::format("\"error_l2\":{}, \"error_max\":{}, \"error_of_net_median\":{}, "
+                         "\"error_of_net_max\":{}, ",
+                         json(error.relative_l2), json(error.worst_per_target),
+                         json(error.median_of_net), json(error.worst_of_net));
   }
-  if (solver->name() == "auto") fmt::print(stderr, "{}\n", solver->description());
+  if (solver->name() == "auto") message("{}\n", solver->description());
   if (output) {
     output->print("fx,fy,fz\n");
     for (std::size_t i = 0; i < n; ++i)
       output->print("{:.17g},{:.17g},{:.17g}\n", fx[i], fy[i], fz[i]);
     output->close();
+    message("forces written to {}\n", options.output);
   }
-  fmt::print("{{\"n\":{}, \"solver\":\"{}\", \"tolerance\":{}, \"threads\":{}, "
-             "\"seconds\":{:.9g}, "
-             "\"error_l2\":{:.6g}, \"error_max\":{:.6g}, \"peak_mib\":{:.1f}}}\n",
-             n, solver->name(), options.tolerance.value_or(solver->accuracy().tolerance),
-             omp_get_max_threads(), median(seconds), error.relative_l2,
-             error.worst_per_target, peak);
+  print_result("{{\"n\":{}, \"solver\":\"{}\", \"tolerance\":{}, \"threads\":{}, "
+               "\"seconds\":{:.9g}, {}\"peak_mib\":{:.1f}}}\n",
+               n, solver->name(), options.tolerance.value_or(solver->accuracy().tolerance),
+               omp_get_max_threads(), median(seconds), errors, peak);
 }
 
 } // namespace
@@ -135,14 +177,17 @@ void add_forces_command(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
       "forces", "Coulomb force on given charges; prints one JSON line on cost and error");
   command
-      ->add_option("BEADS", options->beads,
-                   "CSV with columns x,y,z [m] and q [C], in any order")
+      ->add_option(
+          "BEADS", options->beads,
+          "CSV with columns x,y,z [m] and q [C], or x_m,y_m,z_m,charge_c as export "
+          "writes them, in any order; - reads standard input")
       ->required();
   command->add_option("--solver", options->solver, "How the force is summed: " + solvers)
       ->capture_default_str();
   command
-      ->add_option("--tolerance", options->tolerance, "Allowed relative error of the force")
-      ->check(CLI::Range(0.0, 1.0));
+      ->add_option("--tolerance", options->tolerance,
+                   "Allowed relative error of the force, from 1e-13 to 0.1; default: 1e-6")
+      ->check(finite_number());
   command
       ->add_option("--norm", options->norm,
                    "What the error is relative to: global, |F| over all charges; per-bead, "
@@ -167,6 +212,9 @@ void add_forces_command(CLI::App& app) {
       ->capture_default_str();
   command->add_option("-o,--output", options->output,
                       "CSV of forces fx,fy,fz [N], same order");
+  command->add_flag("!--no-check", options->check,
+                    "Do not compare with the direct sum, which takes longer than the force "
+                    "of many charges. Leaves the errors out of the JSON line");
   command->add_flag("--force", options->force, "Overwrite the output if it exists");
   command->callback([options] { forces(*options); });
 }

@@ -1,4 +1,5 @@
 #include "ehdjet/core/error.hpp"
+#include "ehdjet/core/new_file.hpp"
 #include "ehdjet/runs/run_scene.hpp"
 #include "ehdjet/scene/scene_report.hpp"
 
@@ -7,12 +8,16 @@
 #include <filesystem>
 #include <fmt/format.h>
 #include <memory>
+#include <system_error>
 #include <vector>
 
 #include "commands.hpp"
+#include "cost_watch.hpp"
 #include "interrupt.hpp"
 #include "options.hpp"
 #include "progress.hpp"
+#include "scenes.hpp"
+#include "standard_streams.hpp"
 #include "version.hpp"
 
 namespace ehdjet::cli {
@@ -22,7 +27,7 @@ struct Options {
   SceneOptions scene;
   std::string output, continued;
   std::optional<std::size_t> threads;
-  bool quiet = false, force = false;
+  bool quiet = false, force = false, resume = false;
 };
 
 double time_of(const Simulation& s) {
@@ -30,6 +35,13 @@ double time_of(const Simulation& s) {
 }
 double time_of(const ArraySimulation& s) {
   return s.time();
+}
+
+std::size_t beads_of(const Simulation& s) {
+  return s.jet().beads();
+}
+std::size_t beads_of(const ArraySimulation& s) {
+  return s.beads();
 }
 
 /// Prints a message when a check finds an error of the Coulomb force above the tolerance.
@@ -40,10 +52,9 @@ void report_violations(S& simulation, double tolerance) {
     const RunStatistics& statistics = s.statistics();
     if (statistics.coulomb_violations == reported) return;
     reported = statistics.coulomb_violations;
-    fmt::print(stderr,
-               "\nat t = {:.9g} s the error of the Coulomb force was {:.2g}, more than the "
-               "tolerance {:g}; the solver is stricter from now on\n",
-               time_of(s), *statistics.coulomb_error, tolerance);
+    message("\nat t = {:.9g} s the error of the Coulomb force was {:.2g}, more than the "
+            "tolerance {:g}; the solver is stricter from now on\n",
+            time_of(s), *statistics.coulomb_error, tolerance);
   });
 }
 
@@ -64,16 +75,16 @@ std::string reach_text(const JetState& jet) {
   return fmt::format("  beads         {}\n"
                      "  tip           x = {:.6g} cm, {:.6g} cm off the axis\n"
                      "  path length   {:.6g} cm\n",
-                     jet.links(), 100 * reach.tip.x(), 100 * reach.off_axis,
+                     jet.beads(), 100 * reach.tip.x(), 100 * reach.off_axis,
                      100 * reach.path);
 }
 
 std::string reach_text(const std::vector<JetState>& jets) {
-  std::size_t links = 0;
+  std::size_t beads = 0;
   std::vector<double> off_axis, path;
   for (const JetState& jet : jets) {
     const Reach reach(jet);
-    links += jet.links();
+    beads += jet.beads();
     off_axis.push_back(100 * reach.off_axis), path.push_back(100 * reach.path);
   }
   const auto [nearest, farthest] = std::ranges::minmax(off_axis);
@@ -82,7 +93,7 @@ std::string reach_text(const std::vector<JetState>& jets) {
                      "  beads         {} of all jets\n"
                      "  tips          {:.6g} to {:.6g} cm off the axis of the array\n"
                      "  path lengths  {:.6g} to {:.6g} cm\n",
-                     jets.size(), links, nearest, farthest, shortest, longest);
+                     jets.size(), beads, nearest, farthest, shortest, longest);
 }
 
 std::string summary(const RunResult& result, const SceneConfig& scene,
@@ -124,11 +135,17 @@ std::string summary(const RunResult& result, const SceneConfig& scene,
         "nozzle; {:.4g} Coulomb sums in all\n",
         cost.two_rates->steps, cost.two_rates->method, cost.two_rates->inner_evaluations,
         cost.two_rates->inner_beads, cost.two_rates->full_sums);
-  text += fmt::format("  cost          {} evaluations, {} steps, {} rejected, {:.2f} s\n",
-                      cost.evaluations, cost.steps, cost.rejected, cost.wall_time);
+  text +=
+      fmt::format("  cost          {} evaluations, {} steps, {} rejected, {:.2f} s on {} "
+                  "thread{}\n",
+                  cost.evaluations, cost.steps, cost.rejected, cost.wall_time,
+                  result.threads, result.threads == 1 ? "" : "s");
   if (cost.coincident_pairs > 0)
-    text += fmt::format("  warning       {} pairs of beads at zero distance were skipped\n",
-                        cost.coincident_pairs);
+    text += fmt::format("  warning       {} of beads at zero distance skipped, the most in "
+                        "one evaluation\n",
+                        cost.coincident_pairs == 1
+                            ? "1 pair"
+                            : fmt::format("{} pairs", cost.coincident_pairs));
   if (result.fibre)
     text += fmt::format("  fibre         {:.4g} m landed at {:.3g} m/s since t = {:.4g} s, "
                         "{:.3g} % of its volume "
@@ -139,41 +156,88 @@ std::string summary(const RunResult& result, const SceneConfig& scene,
   return text + fmt::format("  written to    {}\n", file.string());
 }
 
+/// The files that a scene is read from. Their paths in a scene are relative to it.
+std::vector<std::filesystem::path> inputs_of(const std::filesystem::path& scene,
+                                             const SceneConfig& c) {
+  const std::filesystem::path folder = scene.parent_path();
+  std::vector<std::filesystem::path> inputs{scene};
+  if (c.chain) inputs.push_back(folder / c.chain->file);
+  if (c.coulomb && c.coulomb->calibration)
+    inputs.push_back(folder / *c.coulomb->calibration);
+  if (c.air && c.air->profile) inputs.push_back(folder / *c.air->profile);
+  return inputs;
+}
+
 void run(const Options& options) {
   Scene scene = options.scene.read();
   const SceneConfig config = scene.config;
+  const std::vector<std::string> warnings = run_warnings(scene);
   const std::filesystem::path path =
       options.output.empty()
           ? std::filesystem::path(options.scene.scene).filename().replace_extension(".h5")
           : std::filesystem::path(options.output);
+  const std::filesystem::path source = find_scene(options.scene.scene);
+  const std::string origin = origin_of(source);
+  if (!options.resume) { // which keeps what is there
+    refuse_input(path, source);
+    for (const auto& input : inputs_of(origin, config)) refuse_input(path, input);
+  }
   std::optional<Progress> progress;
   std::optional<InterruptGuard> interrupt;
   RunOptions run;
   run.overwrite = options.force, run.threads = options.threads;
-  run.scene_file = options.scene.scene, run.provenance = environment();
+  run.scene_file = origin, run.provenance = environment();
   run.interrupted = InterruptGuard::signal_name;
+  if (!options.quiet)
+    run.note = [](const std::string& text) { message("ehdjet: {}\n", text); };
+  run.checkpoint_wanted = InterruptGuard::checkpoint_wanted;
+  run.resume = options.resume;
   if (!options.continued.empty()) run.continue_from = options.continued;
   const auto started = [&](auto& simulation) {
     interrupt.emplace();
     if (options.quiet) return;
     const SceneConfig& c = config;
-    for (const std::string& warning : near_field_warnings(c))
-      fmt::print(stderr, "warning: {}\n", warning);
+    for (const std::string& warning : warnings) message("warning: {}\n", warning);
     const double start = time_of(simulation), end = c.run.end_time;
-    fmt::print(stderr, "{}{}simulating {:.6g} s into {}\n", c.title,
-               c.title.empty() ? "" : "\n", end - start, path.string());
+    const std::string from = start > 0 ? fmt::format(" from t = {:.6g} s on", start) : "";
+    message("{}{}simulating {:.6g} s{} into {}\n", c.title, c.title.empty() ? "" : "\n",
+            end - start, from, path.string());
     if (c.coulomb && c.coulomb->check_every)
       report_violations(simulation, c.coulomb->tolerance);
     progress.emplace(start, end);
-    simulation.after_each_step([&](const auto& s) { progress->show(s); });
+    simulation.after_each_step(
+        [&, watch = CostWatch(start, end, beads_of(simulation), simulation.statistics())](
+            const auto& s) mutable {
+          progress->show(s);
+          if (const auto warning = watch.look(progress->wall_time(), time_of(s),
+                                              beads_of(s), s.statistics())) {
+            progress->clear();
+            message("warning: {}\n", *warning);
+          }
+        });
   };
   run.started = started, run.array_started = started;
+  if (!options.quiet)
+    warn_of_threads(options.threads ? options.threads : config.run.threads);
   const RunResult result = run_scene(std::move(scene), path, std::move(run));
   progress.reset();
+  if (result.was_complete) {
+    if (!options.quiet)
+      print_result("{} is complete up to t = {} s; nothing is left to do\n", path.string(),
+                   config.run.end_time);
+    return;
+  }
+  std::error_code ignored;
+  const bool renamed = !std::filesystem::equivalent(path, result.file, ignored);
+  const std::filesystem::path& written = renamed ? result.file : path;
   if (result.status == "interrupted")
     throw RunError(
-        fmt::format("{}; everything up to then is in {}", result.message, path.string()));
-  if (!options.quiet) fmt::print("{}", summary(result, config, path));
+        fmt::format("{}; everything up to then is in {}. Go on with ehdjet run --resume",
+                    result.message, written.string()));
+  if (renamed && !options.quiet)
+    message("warning: {} was renamed during the run, to {}\n", path.string(),
+            written.string());
+  if (!options.quiet) print_result("{}", summary(result, config, written));
 }
 
 } // namespace
@@ -189,11 +253,19 @@ void add_run_command(CLI::App& app) {
       ->add_option(
           "--continue", options->continued,
           "Continue from the last checkpoint (output.checkpoints) of a run of this "
-          "scene. Only run.end_time and [output] may differ")
+          "scene. Only run.end_time, run.max_wall_time and [output] may differ")
       ->type_name("FILE.h5");
   add_threads_option(*command, options->threads);
   command->add_flag("--quiet", options->quiet, "Print nothing but errors");
-  command->add_flag("--force", options->force, "Overwrite the run file if it exists");
+  CLI::Option* force =
+      command->add_flag("--force", options->force, "Overwrite the run file if it exists");
+  command
+      ->add_flag(
+          "--resume", options->resume,
+          "Go on with the run in the run file, from its last checkpoint; start if there "
+          "is no file, do nothing if it is complete")
+      ->excludes(force)
+      ->excludes(command->get_option("--continue"));
   command->callback([options] { run(*options); });
 }
 

@@ -10,21 +10,38 @@
 
 namespace ehdjet::detail {
 
+/// The smallest distance of a charge from a cluster that acts on it by an expansion of this order, in
+/// the units of clusters. Close pairs are excluded, which no series may contain, and distances whose
+/// power of `order` + 2 underflows. There are such ones only beside an outlier that is at least 1e12
+/// times as far away as the others.
+[[nodiscard]] inline double closest_of(int order) {
+  return std::max(0x1p10 * close_distance * ExpansionKernel::unit,
+                  std::exp2(-1000.0 / (order + 2)));
+}
+/// More than the round-off of d minus a radius, for centres at distance d. The ball of a cluster with an
+/// outlier is nearly as large as its distance from all others.
+[[nodiscard]] inline double round_off_of(double d) {
+  return 0x1p-44 * d;
+}
+
 /// Decides which pairs of clusters act by their expansions: those with small enough tails of the
 /// series.
 struct Acceptance {
   double opening = 0; ///< largest radius over distance
   int order = 0;
+  double closest = closest_of(order);
   bool per_bead = false;
   /// The allowed error of the force of one pair: relative to this force for the norm `per_bead`,
   /// otherwise without k_C in the units of the clusters.
   double allowed = 0;
+  /// Charges have very different density: dense ones act like one on those around them.
+  bool uneven = false;
 
   /// For the multipole of the source, evaluated at each charge of the target.
   [[nodiscard]] bool one_sided(const Cluster& source, const Cluster& target) const {
     const double d = between(source.centre, target.centre).norm();
-    const double to_target = d - target.radius;
-    if (!(source.radius + no_closer < opening * to_target)) return false;
+    const double to_target = d - target.radius, gap = closest + round_off_of(d);
+    if (!(source.radius + gap < opening * to_target)) return false;
     const double tail = source.lumped * power(source.radius / to_target, order + 1);
     if (per_bead) return tail <= allowed;
     return source.charge * std::sqrt(target.square) * tail <= allowed * reach(d, to_target);
@@ -35,11 +52,14 @@ struct Acceptance {
                                bool mutual) const {
     const Displacement path = between(source.centre, target.centre);
     const double d = path.norm();
-    const double to_target = d - target.radius, to_source = d - source.radius;
-    if (!(source.radius + no_closer < opening * to_target)) return false;
-    if (!(target.radius + no_closer < opening * to_source)) return false;
-    const double of_source = source.lumped * power(source.radius / to_target, order),
-                 of_target = target.lumped * power(target.radius / to_source, order);
+    const double to_target = d - target.radius, to_source = d - source.radius,
+                 gap = closest + round_off_of(d);
+    if (!(source.radius + gap < opening * to_target)) return false;
+    if (!(target.radius + gap < opening * to_source)) return false;
+    const double of_source = source.lumped * power(source.radius / to_target, order)
+                             * (mutual ? alone(target, source) : 1),
+                 of_target = target.lumped * power(target.radius / to_source, order)
+                             * alone(source, target);
     double force = 1, limit = allowed;
     if (!per_bead) {
       force = source.charge * std::sqrt(target.square);
@@ -56,10 +76,15 @@ struct Acceptance {
   }
 
 private:
-  /// A minimum distance in the units of clusters. It is larger than that of close pairs, which no
-  /// series may contain.
-  static constexpr double no_closer = 0x1p10 * close_distance * ExpansionKernel::unit;
-
+  /// Along a curve the errors at a charge of local expansions of many clusters average out. Charges
+  /// at a single place act through one expansion, whose tail at the edge of the target is larger by
+  /// its degree. (A leaf of a single charge is weak.) So do those that are much closer to each other than
+  /// the charges of the other cluster.
+  [[nodiscard]] double alone(const Cluster& c, const Cluster& other) const {
+    constexpr double much_closer = 0.25;
+    const double extent = uneven ? much_closer * other.radius : 0;
+    return c.radius <= extent && c.end - c.begin > padding ? order + 1 : 1;
+  }
   /// The part of a tail that remains in the direction of `path`. The terms of degree p of a charge
   /// in the direction gamma are proportional to P_p(cos gamma), for which Bernstein's bound is
   /// |P_p| < sqrt(2/(pi (p + 1/2) sin gamma)).  The field beside a straight cluster is therefore more

@@ -65,8 +65,10 @@ public:
     a("chosen", chosen_), a("charges", charges_), a("crowding", crowding_);
     a("calls", calls_), a("switches", switches_), a("tightened", tightened_);
     if (!a.is_reading()) return;
-    if (chosen_ >= solvers_.size())
-      throw InputError("the checkpoint is damaged: there is no such Coulomb solver");
+    constexpr std::size_t most_halvings = 1000; // of a double
+    a.require("chosen", chosen_ < solvers_.size(), "is no Coulomb solver");
+    a.require("crowding", std::isfinite(crowding_), "is not finite");
+    a.require("tightened", tightened_ <= most_halvings, "is too much");
     for (auto& solver : solvers_) solver.reset();
     if (charges_ > 0) (void)solver(chosen_);
   }

@@ -16,14 +16,15 @@ struct EnergyProblem {
   const ScaledCharges& charges;
   const ClusterTree& tree;
   const Multipoles& multipoles;
+  double closest = closest_of(parameters.order);
 
   /// The energy of the charges of a leaf in the potential of a cluster.
   [[nodiscard]] double energy_of(std::uint32_t leaf, std::uint32_t source) const {
     const Cluster &target = tree.clusters()[leaf], &cluster = tree.clusters()[source];
     const ChargeColumns c = charges.columns();
-    const double theta =
-        cluster.radius / (between(cluster.centre, target.centre).norm() - target.radius);
-    if (theta >= 0 && theta < parameters.opening
+    const double d = between(cluster.centre, target.centre).norm(),
+                 to_target = d - target.radius, theta = cluster.radius / to_target;
+    if (cluster.radius + closest + round_off_of(d) < parameters.opening * to_target
         && power(theta, parameters.order + 1) <= (1 - theta) * parameters.tolerance)
       return ExpansionKernel::unit
              * expansions.kernel.energy_in_multipole(expansions.numbers, c, target.begin,

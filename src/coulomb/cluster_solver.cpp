@@ -34,9 +34,11 @@ double margin_on_curves(std::size_t levels, const ClusterParameters& parameters)
   const bool more = order % 2 == 0 && order > -std::log10(parameters.tolerance);
   return (more ? 8 : 5) / std::max(pairs, 8.0);
 }
-/// Charges that fill space have many more pairs. If a few charges move among many at rest, their net
-/// forces are small compared with the forces of the pairs.
-constexpr double margin_in_space = 0.8, margin_among_resting = 0.01;
+/// Charges that fill space have many more pairs. Those with a dense centre have many whose errors add
+/// up around it. If a few charges move among many at rest, their net forces are small compared with the
+/// forces of the pairs.
+constexpr double margin_in_space = 0.8, margin_in_uneven_space = 0.3,
+                 margin_among_resting = 0.01;
 
 /// Root mean square of the net force on the targets that move. Errors are relative to it. Each force
 /// call estimates it again from the forces on a few groups of charges, with multipoles of low order,
@@ -200,7 +202,10 @@ public:
         parameters_.order, parameters_.leaf);
   }
   void tighten() override { strictness_ /= 2; }
-  void archive(const Archive& a) override { a("strictness", strictness_); }
+  void archive(const Archive& a) override {
+    a("strictness", strictness_);
+    a.require("strictness", strictness_ > 0 && strictness_ <= 1, "is not between 0 and 1");
+  }
 
 private:
   void sum(std::span<const PointCharges> groups, Vec3View force) {
@@ -213,6 +218,9 @@ private:
     charges_.load(groups, threads, parameters_.norm == ToleranceNorm::moving);
     clusters_[0].find(charges_, 0, parameters_.leaf);
     if (!mutual) clusters_[1].find(charges_, 1, parameters_.leaf);
+    // Few charges that move among many at rest have a margin of their own.
+    acceptance_.uneven = !acceptance_.per_bead && charges_.moves() == nullptr
+                         && (clusters_[0].uneven || (!mutual && clusters_[1].uneven));
     const ClusterProblem problem{.pairs = kernels_.pairs,
                                  .expansions = expansions_,
                                  .charges = charges_,
@@ -228,10 +236,10 @@ private:
       const auto team = static_cast<std::size_t>(omp_get_num_threads());
       const auto thread = static_cast<std::size_t>(omp_get_thread_num());
       multipoles_.gather(problem.sources, charges_.columns());
-      multipoles_.weigh(clusters_[0].tree);
+      multipoles_.weigh(clusters_[0].tree, acceptance_.uneven);
       if (!mutual) {
         of_targets_.gather(problem.targets, charges_.columns());
-        of_targets_.weigh(clusters_[1].tree);
+        of_targets_.weigh(clusters_[1].tree, acceptance_.uneven);
       }
       if (!acceptance_.per_bead) scale_.sample(problem);
 #pragma omp single
@@ -248,7 +256,8 @@ private:
     const bool sorted = clusters_[0].sorted || (!mutual && clusters_[1].sorted);
     std::size_t levels = clusters_[0].tree.levels().size();
     if (!mutual) levels = std::max(levels, clusters_[1].tree.levels().size());
-    const double margin = !sorted ? margin_on_curves(levels - 1, parameters_)
+    const double margin = !sorted              ? margin_on_curves(levels - 1, parameters_)
+                          : acceptance_.uneven ? margin_in_uneven_space
                           : charges_.moves() == nullptr ? margin_in_space
                                                         : margin_among_resting;
     double allowed = margin * strictness_ * parameters_.tolerance;

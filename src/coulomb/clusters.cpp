@@ -49,11 +49,29 @@ void Clusters::find(ScaledCharges& charges, std::size_t group, std::size_t leaf)
   const ClusterTree& found = tree;
   neighbours = mean_neighbours(found);
   sorted = neighbours > worth_sorting || !found.is_ordered();
+  uneven = false;
   if (!sorted) return;
   sort(charges.columns());
   charges.reorder(group, order_);
   tree.bound(charges.columns(), charges.moves());
   neighbours = mean_neighbours(found);
+  uneven = is_uneven();
+}
+
+// The leaves have equally many charges. In an evenly filled body, a layer or a ball nine of ten are at most 1.5
+// times as large as one of ten; in a normally distributed cloud 3.5 times.
+bool Clusters::is_uneven() {
+  constexpr double contrast = 2.2;
+  const std::span<const Cluster> clusters = std::as_const(tree).clusters();
+  radii_.clear();
+  for (const std::uint32_t leaf : tree.leaves()) radii_.push_back(clusters[leaf].radius);
+  const auto at = [&](std::size_t tenths) {
+    return radii_.begin() + static_cast<std::ptrdiff_t>(radii_.size() * tenths / 10);
+  };
+  std::ranges::nth_element(radii_, at(1));
+  const double small = *at(1);
+  std::ranges::nth_element(radii_, at(9));
+  return *at(9) > contrast * small;
 }
 
 template <class Iterator>

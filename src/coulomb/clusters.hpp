@@ -21,6 +21,8 @@ struct Clusters {
   bool sorted = false;
   /// Mean number of leaves whose distance from a leaf is below three times the sum of the radii.
   double neighbours = 0;
+  /// Whether charges fill space with very different density.
+  bool uneven = false;
 
   void find(ScaledCharges& charges, std::size_t group, std::size_t leaf);
 
@@ -31,7 +33,9 @@ private:
     std::uint32_t number;
   };
   void sort(const ChargeColumns& charges);
+  [[nodiscard]] bool is_uneven();
   std::vector<Point> points_;
+  std::vector<double> radii_; ///< of the leaves
 };
 
 /// A measure of how crowded charges are: 0 along a single jet, 1 where they fill space. It follows

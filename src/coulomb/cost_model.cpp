@@ -2,6 +2,7 @@
 
 #include "ehdjet/core/error.hpp"
 #include "ehdjet/coulomb/make_solver.hpp"
+#include "ehdjet/coulomb/measure_costs.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -50,20 +51,26 @@ Trial trial_cloud(std::size_t n) {
   return cloud;
 }
 
-double seconds_per_call(CoulombSolver& solver, const Trial& c) {
+struct Calls {
+  double best = 0, spread = 1; // [s], median over best
+};
+
+Calls time_calls(CoulombSolver& solver, const Trial& c) {
   const std::size_t n = c.x.size();
   const std::vector<double> q(n, 1e-10);
   std::vector<double> fx(n), fy(n), fz(n);
   using Clock = std::chrono::steady_clock;
-  double best = 1e300, spent = 0;
+  std::vector<double> times;
+  double spent = 0;
   for (int calls = 0; calls < 3 || (spent < 0.02 && calls < 1000); ++calls) {
     const auto start = Clock::now();
     solver.add_force({{c.x, c.y, c.z}, q}, {fx, fy, fz});
     const double time = std::chrono::duration<double>(Clock::now() - start).count();
-    best = std::min(best, time), spent += time;
+    times.push_back(time), spent += time;
     if (time > 0.3) break;
   }
-  return best;
+  std::ranges::sort(times);
+  return {.best = times.front(), .spread = times[times.size() / 2] / times.front()};
 }
 
 } // namespace
@@ -102,7 +109,15 @@ std::size_t CostModel::crossover(double tolerance, double crowding) const {
 }
 
 CostModel CostModel::measured(SimdLevel level) {
+  return measure_costs(level, {});
+}
+
+CostModel measure_costs(SimdLevel level,
+                        const std::function<void(const CostTiming&)>& watch) {
   CostModel model;
+  CostTiming timing{.number = 0,
+                    .all = model.charges.size() * (1 + 2 * model.tolerances.size()),
+                    .spread = 1};
   const auto measure = [&](const char* solver, double tolerance, Trial (*make)(std::size_t),
                            std::vector<double>& seconds) {
     const auto timed = make_coulomb_solver(
@@ -111,9 +126,13 @@ CostModel CostModel::measured(SimdLevel level) {
       // The direct sum is quadratic for many charges. Its time is extrapolated.
       const bool known = timed->name() == "direct" && n > 2e4;
       const Trial trial = make(known ? 1 : static_cast<std::size_t>(n));
-      seconds.push_back(known ? seconds.back()
-                                    * std::pow(n / model.charges[seconds.size() - 1], 2)
-                              : seconds_per_call(*timed, trial));
+      const Calls calls =
+          known ? Calls{.best = seconds.back()
+                                * std::pow(n / model.charges[seconds.size() - 1], 2)}
+                : time_calls(*timed, trial);
+      seconds.push_back(calls.best);
+      ++timing.number, timing.spread = calls.spread;
+      if (watch) watch(timing);
     }
   };
   measure("direct", 1e-6, trial_jet, model.direct);

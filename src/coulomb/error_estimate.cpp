@@ -63,6 +63,7 @@ CoulombErrorSample sampled_error(const PointCharges& charges, ConstVec3View forc
   CoulombErrorSample sample{.targets = targets};
   std::ranges::sort(errors, {}, &TargetError::force2);
   const std::size_t weaker = targets - targets / 10;
+  std::vector<double> of_net; // without NaN, by which nothing can be sorted
   for (std::size_t k = 0; k < targets; ++k) {
     const TargetError& e = errors[k];
     error2 += e.error2, force2 += e.force2;
@@ -71,11 +72,21 @@ CoulombErrorSample sampled_error(const PointCharges& charges, ConstVec3View forc
     // A NaN is taken over and stays, because nothing compares as greater.
     if (worst > sample.worst_per_target || std::isnan(worst))
       sample.worst_per_target = worst;
+    const double net = ratio(std::sqrt(e.error2), std::sqrt(e.force2));
+    if (std::isnan(net))
+      sample.worst_of_net = net;
+    else
+      of_net.push_back(net);
   }
   sample.relative_l2 = ratio(std::sqrt(error2), std::sqrt(force2));
   if (targets > 0)
     sample.relative_moving = ratio(std::sqrt(error2 / static_cast<long double>(targets)),
                                    std::sqrt(weaker2 / static_cast<long double>(weaker)));
+  std::ranges::sort(of_net);
+  if (!of_net.empty()) {
+    sample.median_of_net = of_net[of_net.size() / 2];
+    if (!std::isnan(sample.worst_of_net)) sample.worst_of_net = of_net.back();
+  }
   return sample;
 }
 

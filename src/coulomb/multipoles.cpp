@@ -65,8 +65,9 @@ void Multipoles::gather(const ClusterTree& tree, const ChargeColumns& charges) {
 // places at the ends of the cluster. For a straight piece of a curve it is Q r^l/(l+1), for a ring a
 // third of Q r^l. The acceptance criterion is calibrated for these two, with even orders for straight
 // pieces only, because of their larger share of the tolerance (cluster_solver.cpp). The last two
-// degrees are used, because every other degree of a symmetric cluster vanishes.
-void Multipoles::weigh(ClusterTree& tree) const {
+// degrees are used, because every other degree of a symmetric cluster vanishes. What two degrees say of
+// a cluster with a dense core at its edge is too little.
+void Multipoles::weigh(ClusterTree& tree, bool uneven) const {
   const int p = expansions_.numbers.order;
   const bool even = p % 2 == 0;
   const double smooth = even ? std::max(0.2, 1.0 / p) : 0.4;
@@ -78,6 +79,10 @@ void Multipoles::weigh(ClusterTree& tree) const {
     Cluster& c = clusters[k];
     c.lumped = 1;
     if (!(c.radius > 0 && c.charge > 0)) continue;
+    if (uneven) {
+      c.lumped = most;
+      continue;
+    }
     if (c.moving > 0 && c.moving < static_cast<double>(tree.end_of(c) - c.begin)) {
       c.lumped = most; // the charges that move may all be at one end
       continue;

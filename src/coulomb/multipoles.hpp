@@ -68,8 +68,9 @@ public:
     if (sets_.size() < lines) sets_.resize(lines);
   }
   void gather(const ClusterTree& tree, const ChargeColumns& charges);
-  /// Sets Cluster::lumped: the error of the series relative to that of evenly spread charges.
-  void weigh(ClusterTree& tree) const;
+  /// Sets Cluster::lumped: the error of the series relative to that of evenly spread charges. If the
+  /// charges are `uneven`, the worst case.
+  void weigh(ClusterTree& tree, bool uneven) const;
   [[nodiscard]] const double* operator[](std::size_t cluster) const {
     return sets_[expansions_.lines * cluster].value;
   }

@@ -112,9 +112,10 @@ void ActingChain::dry(JetColumns<const double> y) {
 //
 // where the plate, which moves at U, has taken it since then.
 // To fly on with the velocity of the crossing is right to second order in the time since then,
-// which is less than a step. On an insulating collector they keep their charges. Otherwise all beads at the end of the chain but the last one of those that have
-// passed have left the chain and act on no other bead. On a grounded collector that one does not act
-// either. Within a long step beads may pass that have others behind them which have not; they wait.
+// which is less than a step. On an insulating collector they keep their charges. Otherwise all beads at
+// the end of the chain but the last one of those that have passed have left the chain and act on no other
+// bead. On a grounded collector that one does not act either. Within a long step beads may pass that have
+// others behind them which have not; they wait.
 void ActingChain::absorb(std::span<const double> y) {
   const auto r = stage_.columns.position(), v = stage_.columns.velocity();
   const auto rests = [&](std::size_t k) { return support(k) == Support::collector; };

@@ -104,7 +104,8 @@ void ArrayDynamics::evaluate(double t, std::span<const double> y, std::span<doub
   gather_charges(t, y);
   std::ranges::fill(force_, 0.0);
   solver_->add_force({three_columns(place_), charge_, moves_}, three_columns(force_));
-  coincident_pairs_ += solver_->coincident_pairs();
+  coincident_pairs_ =
+      std::max<std::uint64_t>(coincident_pairs_, solver_->coincident_pairs());
   for (std::size_t j = 0; j < jets(); ++j) {
     Part& part = parts_[j];
     part.dynamics->evaluate(t, part.state, part.rate);

@@ -38,7 +38,7 @@ void change_mesh(EventContext& context, const RefinementRule& rule,
                  std::optional<MeshChange> (*cut_anew)(JetState&, const RefinementRule&)) {
   JetState& jet = context.jet;
   const JetTotals before = totals ? totals(jet) : JetTotals{};
-  const std::size_t beads_before = jet.links();
+  const std::size_t beads_before = jet.beads();
   const auto joined = rule.joins() ? coarsen_jet(jet, rule) : std::nullopt;
   const auto cut = at_time(jet.time, [&] { return cut_anew(jet, rule); });
   if (!joined && !cut) return;
@@ -49,7 +49,7 @@ void change_mesh(EventContext& context, const RefinementRule& rule,
       {.time = jet.time,
        .kept = std::min(joined ? joined->kept : jet.links(), cut ? cut->kept : jet.links()),
        .beads_before = beads_before,
-       .beads_after = jet.links(),
+       .beads_after = jet.beads(),
        .change = difference(totals(jet), before),
        .worst_link = cut ? cut->worst_link : 0});
 }
@@ -113,7 +113,8 @@ LinkCuts::LinkCuts(const RefinementRule& rule, std::optional<double> interval,
 bool LinkCuts::due(const JetState& jet) const {
   if (schedule_ && jet.time < schedule_->next() * (1 - round_off)) return false;
   if (schedule_ && at_step_ends_) return true; // `apply` passes the multiple
-  return has_long_link(jet, rule_) || has_short_links(jet, rule_);
+  if (has_long_link(jet, rule_)) return true;
+  return !(jet.time == instant_ && joins_ >= most_joins) && has_short_links(jet, rule_);
 }
 
 std::optional<double> LinkCuts::locate(const DenseStep& step) {
@@ -132,6 +133,10 @@ void LinkCuts::pass(double t) {
 
 void LinkCuts::apply(EventContext& context) {
   pass(context.jet.time);
+  if (rule_.shortest) {
+    if (context.jet.time != instant_) instant_ = context.jet.time, joins_ = 0;
+    ++joins_;
+  }
   change_mesh(context, rule_, totals_, cut_links);
 }
 

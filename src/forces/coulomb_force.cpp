@@ -12,7 +12,8 @@ void CoulombForce::add_force(const Stage& stage, Vec3View force) {
   const PointCharges all{stage.columns.position(), stage.charge, stage.moves};
   if (stage.targets.covers(n) && stage.sources.covers(n)) {
     solver_->add_force(all, force);
-    coincident_pairs_ += solver_->coincident_pairs();
+    coincident_pairs_ =
+        std::max<std::uint64_t>(coincident_pairs_, solver_->coincident_pairs());
     return;
   }
   const auto part = [](auto columns, BeadRange beads) {
@@ -26,7 +27,8 @@ void CoulombForce::add_force(const Stage& stage, Vec3View force) {
   };
   if (stage.targets.within(n) == stage.sources.within(n)) {
     solver_->add_force(charges(stage.sources), part(force, stage.sources));
-    coincident_pairs_ += solver_->coincident_pairs();
+    coincident_pairs_ =
+        std::max<std::uint64_t>(coincident_pairs_, solver_->coincident_pairs());
     return;
   }
   // A bead and itself is a pair at zero distance here: such pairs are not counted.

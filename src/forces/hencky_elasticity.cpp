@@ -26,14 +26,12 @@ std::vector<BeadColumn> HenckyElasticity::columns() const {
 
 void HenckyElasticity::bind(const BeadTable& table) {
   reference_ = table.find_carried("reference_length").value();
-  drying_ = table.drying();
 }
 
-// In a link that is fed, l_ref is that of the volume it would have now if nothing evaporated.
+// In a link that is fed, l_ref grows with the volume.
 double HenckyElasticity::reference(const Stage& stage, std::size_t k) const {
   if (!is_fed(stage, k)) return stage.carried(reference_)[k];
-  const double left = drying_ ? 1 - stage.columns.column(drying_->column)[k] : 1;
-  return stage.volume[k] / left / (stage.feed->section * options_.nozzle_stretch);
+  return stage.volume[k] / (stage.feed->section * options_.nozzle_stretch);
 }
 
 double HenckyElasticity::stress(const Stage& stage, std::size_t k) const {

@@ -32,7 +32,8 @@ double own_image_force(const MirroredPiece& p, const Mirrors& mirrors) {
   if (p.charge == 0) return 0;
   const double h = mirrors.distance, by_collector = nearest_image(p, h - p.x);
   if (!mirrors.both_plates) return by_collector;
-  const double u = p.x / h;
+  // Trial steps that are rejected later may be anywhere; GSL has no value there.
+  const double u = std::clamp(p.x / h, 0.0, 1.0);
   return by_collector - nearest_image(p, p.x)
          - constants::coulomb * p.charge * p.charge / (4 * h * h)
                * (gsl_sf_psi_1(1 + u) - gsl_sf_psi_1(2 - u));

@@ -126,6 +126,10 @@ void AutoIntegrator::archive(const Archive& a) {
   a("chosen", chosen_), a("rejected", rejected_), a("accepted", accepted_);
   a("steps_to_look", steps_to_look_), a("in_a_row", in_a_row_);
   a("patience", patience_), a("steps", steps_), a("left_implicit", left_implicit_);
+  a.require("accepted", accepted_ >= 0, "is negative");
+  a.require("patience", patience_ >= first_patience && patience_ <= most_patience,
+            "is out of range");
+  explicit_.archive(a.part("explicit")); // the implicit method keeps nothing between steps
 }
 
 double AutoIntegrator::initial_step(OdeSystem& system, double t,

@@ -158,6 +158,15 @@ void RungeKutta::start_from_rate(std::span<const double> rate) {
   first_known_ = true;
 }
 
+void RungeKutta::archive(const Archive& a) {
+  std::vector<double> rate;
+  if (first_known_) rate = k(0);
+  a("first_rate", rate);
+  if (!a.is_reading()) return;
+  restart();
+  if (!rate.empty()) start_from_rate(rate);
+}
+
 void RungeKutta::commit(std::vector<double>& y) {
   y.swap(y1_);
   if (end_known_) k(0).swap(k(method_->stages.size()));

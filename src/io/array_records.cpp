@@ -22,6 +22,7 @@ public:
       data_sets_.push_back(&file_->add_column("observables", c, chunk_rows));
     file_->flush();
   }
+  void archive(const Archive& a) override { ehdjet::archive(a, "observables", columns_); }
 
 private:
   void append(const ArraySnapshot& snapshot) override {
@@ -42,22 +43,20 @@ public:
     for (const FrameColumn& c : columns_)
       data_sets_.push_back(&file_->add_column("beads", c, 4 * chunk_rows));
     jet_ = &file_->add_column("beads", jet_column(), 4 * chunk_rows);
-    times_ = std::make_unique<FrameTimes>(*file_);
+    times_ = std::make_unique<FrameTimes>(*file_, *data_sets_.front());
     file_->flush();
   }
 
 private:
   void append(const ArraySnapshot& snapshot) override {
-    std::size_t beads = 0;
     for (std::size_t j = 0; j < snapshot.jets.size(); ++j) {
       const JetSnapshot jet = snapshot.jet(j);
       for (std::size_t i = 0; i < columns_.size(); ++i)
         data_sets_[i]->append(columns_[i].values(jet));
       for (std::size_t k = 0; k < jet.jet.beads(); ++k)
         jet_->append(static_cast<double>(j));
-      beads += jet.jet.beads();
     }
-    times_->append(snapshot.time, beads);
+    times_->append(snapshot.time);
   }
 
   std::vector<FrameColumn> columns_;

@@ -1,11 +1,11 @@
 #include "ehdjet/core/csv_table.hpp"
 #include "ehdjet/core/error.hpp"
+#include "ehdjet/core/printable.hpp"
 #include "ehdjet/io/export.hpp"
 
 #include <algorithm>
 #include <limits>
 #include <map>
-#include <numbers>
 #include <utility>
 #include <vector>
 
@@ -17,7 +17,8 @@ namespace {
 void print_csv(const RunTable& table, TextOutput& output) {
   const auto& columns = table.columns;
   for (std::size_t c = 0; c < columns.size(); ++c)
-    output.print("{}{}", c == 0 ? "" : ",", csv_name(columns[c].name, columns[c].unit));
+    output.print("{}{}", c == 0 ? "" : ",",
+                 printable(csv_name(columns[c].name, columns[c].unit)));
   output.print("\n");
   for (std::size_t row = 0; row < table.rows(); ++row) {
     for (std::size_t c = 0; c < columns.size(); ++c)
@@ -40,16 +41,13 @@ RunTable in_order(RunTable table, const List& list) {
   return table;
 }
 
-// Of the fibre of each jet, from the volume that its links have when they leave the chain.
+// Of the fibre of each jet.
 std::vector<double> arc_length(const RunTable& deposit) {
-  const auto &volume = deposit["volume"], &radius = deposit["radius"];
-  const RunTable::Column *jet = deposit.find("jet"), *lost = deposit.find(evaporated);
-  std::vector<double> lengths(deposit.rows());
+  const RunTable::Column* jet = deposit.find("jet");
+  std::vector<double> lengths = link_lengths(deposit);
   std::map<double, double> end;
-  for (std::size_t k = 0; k < deposit.rows(); ++k)
-    lengths[k] = end[jet != nullptr ? jet->values[k] : 0] +=
-        volume[k] * (lost != nullptr ? 1 - lost->values[k] : 1)
-        / (std::numbers::pi * radius[k] * radius[k]);
+  for (std::size_t k = 0; k < lengths.size(); ++k)
+    lengths[k] = end[jet != nullptr ? jet->values[k] : 0] += lengths[k];
   return lengths;
 }
 

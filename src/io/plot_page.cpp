@@ -1,326 +1,308 @@
+#include "ehdjet/io/plot_page.hpp"
+
 #include "ehdjet/core/error.hpp"
-#include "ehdjet/io/export.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 #include <fmt/format.h>
-#include <limits>
-#include <string_view>
+#include <fmt/ranges.h>
 #include <utility>
-#include <vector>
 
-#include "record_columns.hpp"
+#include "page_content.hpp"
+#include "page_layout.hpp"
 
 namespace ehdjet {
+
+const std::vector<std::pair<std::string, std::string>>& page_panels() {
+  static const std::vector<std::pair<std::string, std::string>> all{
+      {"side", "the jet from the side"},
+      {"along", "the jet along its axis"},
+      {"space", "the jet in space"},
+      {"radius", "radius along the jet"},
+      {"map", "the fibre on the collector"},
+      {"fibre", "length of the deposited fibre by its radius"},
+      {"beads", "number of beads over time"},
+      {"path", "path length over time"},
+      {"tip", "distance of the tip from the axis over time"},
+      {"impact", "impact speed over time"}};
+  return all;
+}
+
 namespace {
 
-using Values = std::vector<double>;
-
-// The colours of Okabe and Ito, which colour-blind readers can distinguish.
-constexpr const char* blue = "#0072B2";
-constexpr const char* green = "#009E73";
-constexpr const char* vermillion = "#D55E00";
-constexpr const char* purple = "#CC79A7";
-constexpr const char* grey = "#999999";
-
-constexpr double page_width = 1600, page_height = 1000; // [px]
-
-struct Unit {
-  const char* name;
-  double size; // [SI unit]
-};
-
-Unit length_unit(double extent) {
-  if (extent >= 1) return {"m", 1};
-  if (extent >= 0.01) return {"cm", 1e-2};
-  return extent >= 1e-4 ? Unit{"mm", 1e-3} : Unit{"µm", 1e-6};
+bool is_view(const std::string& panel) {
+  return panel == "side" || panel == "along" || panel == "space";
 }
 
-Unit time_unit(double extent) {
-  if (extent >= 1) return {"s", 1};
-  return extent >= 1e-3 ? Unit{"ms", 1e-3} : Unit{"µs", 1e-6};
-}
-
-struct Range {
-  double low, high;
-};
-
-Range range_of(const Values& values) {
-  Range range{std::numeric_limits<double>::infinity(),
-              -std::numeric_limits<double>::infinity()};
-  for (const double value : values)
-    if (std::isfinite(value))
-      range = {std::min(range.low, value), std::max(range.high, value)};
-  return range;
-}
-
-// Adds a margin to the range. The result is never empty, because gnuplot refuses an empty range.
-Range padded(Range range) {
-  if (!(range.low <= range.high)) return {0, 1};
-  const double margin = range.high > range.low ? 0.06 * (range.high - range.low)
-                        : range.high != 0      ? 0.1 * std::abs(range.high)
-                                               : 1;
-  return {range.low - margin, range.high + margin};
-}
-
-double largest(const Values& values) {
-  double largest = 0;
-  for (const double value : values) largest = std::max(largest, std::abs(value));
-  return largest;
-}
-
-std::string in_quotes(std::string_view text) { // in gnuplot's single quotes
-  std::string result(1, '\'');
-  for (const char c : text) result.append(c == '\'' ? 2 : 1, c);
-  return result + '\'';
-}
-
-// A box in fractions of the page, measured from the lower left corner.
-struct Box {
-  double left, right, bottom, top;
-};
-
-std::string place(const Box& box) {
-  return fmt::format("set lmargin at screen {:.4f}\nset rmargin at screen {:.4f}\n"
-                     "set bmargin at screen {:.4f}\nset tmargin at screen {:.4f}\n",
-                     box.left, box.right, box.bottom, box.top);
-}
-
-// Several `lines` are kept apart.
-std::string data_block(const char* name, const Values& a, const Values& b, double unit_a,
-                       double unit_b, const std::vector<BeadRange>& lines) {
-  constexpr std::size_t most_rows = 20000; // more than the page has pixels
-  const std::size_t stride = a.size() / most_rows + 1;
-  std::string block = fmt::format("${} << EOD\n", name);
-  for (const BeadRange& line : lines) {
-    if (line.begin > 0) block += '\n';
-    for (std::size_t i = line.begin; i < line.end; i += stride)
-      block += fmt::format("{:.7g} {:.7g}\n", a[i] / unit_a, b[i] / unit_b);
+// What a file lacks for a panel, and the key of a scene that brings it; nothing if it is all there.
+std::string lack_of(const std::string& panel, const RunReader& run) {
+  if (is_view(panel) || panel == "radius") {
+    if (!run.has("frames")) return "has no frames: set output.frames in the scene";
+    return run.frame_times().empty() ? "has no frame yet" : "";
   }
-  return block + "EOD\n";
-}
-
-std::string data_block(const char* name, const Values& a, const Values& b, double unit_a,
-                       double unit_b) {
-  return data_block(name, a, b, unit_a, unit_b, {{0, a.size()}});
-}
-
-std::string terminal(const std::filesystem::path& output) {
-  const std::string extension = output.extension().string();
-  const auto size = [](double unit) {
-    return fmt::format("{:g},{:g}", page_width * unit, page_height * unit);
-  };
-  if (extension == ".png") return "pngcairo size " + size(1) + " font 'sans,15'";
-  if (extension == ".svg")
-    return "svg size " + size(1) + " font 'sans,18' background '#ffffff'";
-  if (extension == ".pdf") // 108 px per inch gives the same proportions of text and page
-    return fmt::format("pdfcairo size {:g}in,{:g}in font 'sans,14'", page_width / 108,
-                       page_height / 108);
-  throw InputError(fmt::format("cannot plot to {}: the name must end in .png, .svg or .pdf",
-                               output.string()));
-}
-
-// The ranges of the two views [m], and the unit of their axes.
-struct Extent {
-  Range x;
-  double across; // largest |y| or |z|
-  Unit unit;
-};
-
-// Coordinates of the deposited beads across the axis [m].
-struct Deposited {
-  Values y, z;
-};
-
-Extent extent_of(const Frame& f, const Deposited& deposit) {
-  const double across =
-      std::max({largest(f["y"]), largest(f["z"]), largest(deposit.y), largest(deposit.z)});
-  Range x = range_of(f["x"]);
-  // A chain in a plane x = const also gets a view of some width.
-  const double least = std::max({x.high - x.low, 0.3 * across, 1e-9});
-  x.high = x.low + least;
-  return {{x.low - 0.02 * least, x.high + 0.02 * least},
-          std::max(1.08 * across, 0.1 * least),
-          length_unit(least)};
-}
-
-// Boxes for the two views. A metre has the same length in both views and both directions.
-std::pair<Box, Box> view_boxes(const Extent& extent, double bottom, double top) {
-  const double left = 0.07, gap = 0.085, right = 0.985;
-  const double width = extent.x.high - extent.x.low + 2 * extent.across; // of both [m]
-  const double metre = std::min((top - bottom) * page_height / (2 * extent.across),
-                                (right - left - gap) * page_width / width); // [px]
-  const double half_height = metre * extent.across / page_height,
-               middle = (top + bottom) / 2;
-  const double start = left + (right - left - gap - metre * width / page_width) / 2;
-  const double side_end = start + metre * (extent.x.high - extent.x.low) / page_width;
-  const double end = side_end + gap + metre * 2 * extent.across / page_width;
-  return {{start, side_end, middle - half_height, middle + half_height},
-          {side_end + gap, end, middle - half_height, middle + half_height}};
-}
-
-// The beads that have left the chain until `time` [s].
-Deposited landed_by(double time, const RunReader& run) {
-  if (!run.has("deposit")) return {};
-  const RunTable deposit = run.table("deposit");
-  const Values& removal = deposit["removal_time"];
-  const auto later = [&](double t) { return t > time; };
-  const auto beads =
-      static_cast<std::size_t>(std::ranges::find_if(removal, later) - removal.begin());
-  Deposited landed{deposit["y"], deposit["z"]};
-  landed.y.resize(beads), landed.z.resize(beads);
-  return landed;
-}
-
-// The jet from the side and along its axis.
-std::string views(const Frame& f, const Deposited& deposit, double bottom, double top) {
-  const Extent extent = extent_of(f, deposit);
-  const auto [side, along] = view_boxes(extent, bottom, top);
-  const double m = extent.unit.size;
-  Values x, y, z; // of landed beads
-  for (std::size_t k = 0; k < f.rows(); ++k)
-    if (f["landed"][k] != 0)
-      x.push_back(f["x"][k]), y.push_back(f["y"][k]), z.push_back(f["z"][k]);
-  const std::vector<BeadRange> jets = jets_of(f);
-  Values nozzle_x, nozzle_y, nozzle_z;
-  for (const BeadRange& jet : jets)
-    nozzle_x.push_back(f["x"][jet.begin]), nozzle_y.push_back(f["y"][jet.begin]),
-        nozzle_z.push_back(f["z"][jet.begin]);
-  std::string s = data_block("side", f["x"], f["y"], m, m, jets)
-                  + data_block("along", f["y"], f["z"], m, m, jets)
-                  + data_block("landed_side", x, y, m, m)
-                  + data_block("landed_along", y, z, m, m)
-                  + data_block("deposit", deposit.y, deposit.z, m, m)
-                  + data_block("nozzle_side", nozzle_x, nozzle_y, m, m)
-                  + data_block("nozzle_along", nozzle_y, nozzle_z, m, m);
-  const std::string jet =
-      fmt::format("with linespoints lc rgb '{}' lw 1.3 pt 7 ps 0.35 notitle", blue);
-  const std::string nozzle = "with points lc rgb 'black' pt 5 ps 1.1 ";
-  const std::string landed =
-      fmt::format("with points lc rgb '{}' pt 7 ps 1.1 ", vermillion);
-  s += place(side)
-       + fmt::format("set title 'Side view' offset 0,-0.4\nset key top left Left reverse\n"
-                     "set xlabel 'x  ({0})'\nset ylabel 'y  ({0})' offset 1,0\n"
-                     "set xrange [{1:.7g}:{2:.7g}]\nset yrange [-{3:.7g}:{3:.7g}]\n",
-                     extent.unit.name, extent.x.low / m, extent.x.high / m,
-                     extent.across / m)
-       + "plot $side " + jet + ", $nozzle_side " + nozzle + "title 'nozzle'";
-  if (!x.empty()) s += ", $landed_side " + landed + "title 'landed'";
-  s += "\nunset label 1\n";
-  s += place(along)
-       + fmt::format("set title 'Along the axis' offset 0,-0.4\n{2}\n"
-                     "set xlabel 'y  ({0})'\nset ylabel 'z  ({0})' offset 1,0\n"
-                     "set xrange [-{1:.7g}:{1:.7g}]\nset yrange [-{1:.7g}:{1:.7g}]\nplot ",
-                     extent.unit.name, extent.across / m,
-                     deposit.y.empty() ? "unset key" : "");
-  if (!deposit.y.empty())
-    s +=
-        fmt::format("$deposit with points lc rgb '{}' pt 7 ps 0.4 title 'deposit', ", grey);
-  s += "$along " + jet + ", $nozzle_along " + nozzle + "notitle";
-  if (!x.empty()) s += ", $landed_along " + landed + "notitle";
-  return s + "\n";
-}
-
-struct Panel {
-  const char* title;
-  std::string unit; // empty if the values have none
-  const char* colour;
-  Values values; // NaN where there is no value
-};
-
-std::vector<Panel> panels(const RunReader& run) {
-  const auto with_length_unit = [&](const char* title, const char* column,
-                                    const char* colour) {
-    Values values = run.column("observables", column);
-    const Unit unit = length_unit(largest(values));
-    for (double& value : values) value /= unit.size;
-    return Panel{title, unit.name, colour, std::move(values)};
-  };
-  Values impact = run.column("observables", "impact_speed");
-  // The speed is 0 before the first bead has landed.
-  std::ranges::replace(impact, 0.0, std::numeric_limits<double>::quiet_NaN());
-  return {{"Beads", "", blue, run.column("observables", "beads")},
-          with_length_unit("Path length", "path_length", vermillion),
-          with_length_unit("Tip: distance from the axis", "tip_yz", green),
-          {"Impact speed", "m/s", purple, std::move(impact)}};
-}
-
-std::string draw(const Panel& panel, const Values& time, const Unit& unit, const Box& box) {
-  const Range range = range_of(panel.values), shown = padded(range), times = range_of(time);
-  const double end = times.high > times.low ? times.high : times.low + unit.size;
-  const std::string in_unit = panel.unit.empty() ? "" : "  (" + panel.unit + ")";
-  return data_block("panel", time, panel.values, unit.size, 1) + place(box)
-         + fmt::format("set title '{}{}' offset 0,-0.4\nunset key\nunset ylabel\n"
-                       "set xlabel 'time  ({})'\n"
-                       "set xrange [{:.7g}:{:.7g}]\nset yrange [{:.7g}:{:.7g}]\n{}"
-                       "plot $panel with lines lc rgb '{}' lw 2\n"
-                       "unset label 1\nunset label 99\n",
-                       panel.title, in_unit, unit.name, times.low / unit.size,
-                       end / unit.size, shown.low, shown.high,
-                       range.low <= range.high
-                           ? ""
-                           : "set label 99 'none yet' at graph 0.5,0.5 center\n",
-                       panel.colour);
-}
-
-std::string observables(const RunReader& run, std::optional<double> frame_time,
-                        double bottom, double top, std::size_t per_row) {
-  const Values time = run.column("observables", "time");
-  const std::vector<Panel> all = panels(run);
-  const Unit unit = time_unit(largest(time));
-  const std::size_t rows = all.size() / per_row;
-  const double width = 0.955 / static_cast<double>(per_row);
-  const double height = (top - bottom) / static_cast<double>(rows);
-  std::string s = "set tics font ',13'\n";
-  if (frame_time) // marks the time of the views
-    s += fmt::format(
-        "set arrow 1 from first {0:.7g}, graph 0 to first {0:.7g}, graph 1 nohead "
-        "lc rgb '{1}' dt 2 lw 1.5 back\n",
-        *frame_time / unit.size, grey);
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    const std::size_t row = i / per_row;
-    const double left = 0.03 + width * static_cast<double>(i % per_row);
-    const double ceiling = top - height * static_cast<double>(row);
-    s += draw(
-        all[i], time, unit,
-        {left + 0.04, left + width - 0.005, ceiling - height + 0.075, ceiling - 0.045});
+  if (panel == "map" || panel == "fibre") {
+    if (!run.has("deposit"))
+      return "has no deposit: set output.deposit = true in the scene";
+    return run.column("deposit", "removal_time").empty()
+               ? "has an empty deposit: no bead has left at the collector"
+               : "";
   }
-  return s;
+  if (!run.has("observables"))
+    return "has no observables: set output.observables in the scene";
+  if (run.column("observables", "time").empty()) return "has no row of observables yet";
+  const bool landed = panel != "impact"
+                      || std::ranges::any_of(run.column("observables", "impact_speed"),
+                                             [](double v) { return v != 0; });
+  return landed ? "" : "has no impact: no bead has landed";
+}
+
+bool has_data(const std::string& panel, const RunReader& run) {
+  return lack_of(panel, run).empty();
+}
+
+std::string joined(const std::vector<std::string>& names) {
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+// Height of the page below the title and a line for each run.
+double below_head(const Canvas& page, bool titled, std::size_t runs) {
+  return page.height
+         - page.letter
+               * ((titled ? 1.45 * 1.35 : 0) + 1.45 * static_cast<double>(runs) + 0.5);
 }
 
 } // namespace
 
-std::string plot_page(const RunReader& run, std::optional<double> time,
-                      const std::filesystem::path& output) {
-  std::string s = fmt::format("set encoding utf8\nset terminal {}\nset output {}\n",
-                              terminal(output), in_quotes(output.string()));
-  const bool has_frames = run.has("frames") && !run.frame_times().empty();
-  const bool has_observables =
-      run.has("observables") && !run.column("observables", "time").empty();
-  if (!has_frames && !has_observables)
-    throw InputError(run.path().string() + " has neither frames nor observables to plot");
-  s +=
-      "set border 3 lc rgb '#404040'\nset tics nomirror out scale 0.6\n"
-      "set grid lc rgb '#E4E4E4' lw 1 lt 1\nset key samplen 1 opaque box lc rgb '#E4E4E4'\n"
-      "set multiplot\n";
-  std::string views_text, heading = run.path().filename().string();
-  std::optional<double> frame_time;
-  if (has_frames) {
-    const Frame frame = run.frame(run.nearest_frame(time));
-    const Unit unit = time_unit(frame.time);
-    frame_time = frame.time;
-    heading += fmt::format(",  t = {:.6g} {},  {} beads", frame.time / unit.size, unit.name,
-                           frame.rows());
-    views_text =
-        views(frame, landed_by(frame.time, run), has_observables ? 0.42 : 0.1, 0.895);
+bool PlotPage::Content::has_room_for(const std::vector<std::string>& panels) const {
+  const auto views = static_cast<std::size_t>(std::ranges::count_if(panels, is_view));
+  const Canvas page = canvas();
+  return have_room(page, below_head(page, !title.empty(), runs.size()),
+                   {.views = views,
+                    .diagrams = panels.size() - views,
+                    .with_side = std::ranges::find(panels, "side") != panels.end()});
+}
+
+// Those that were asked for, or as many as there is room for.
+void PlotPage::Content::choose_panels() {
+  const auto any_has = [&](const std::string& panel) {
+    return std::ranges::any_of(
+        runs, [&](const Run& run) { return has_data(panel, *run.of.run); });
+  };
+  if (!options.panels.empty()) {
+    for (const std::string& panel : options.panels) {
+      if (shows(panel)) continue;
+      if (!any_has(panel)) {
+        std::string lacks;
+        for (const Run& run : runs)
+          lacks += fmt::format("{}{} {}", lacks.empty() ? "" : "; ",
+                               run.of.run->path().string(), lack_of(panel, *run.of.run));
+        throw InputError(fmt::format("cannot draw the panel {}: {}", panel, lacks));
+      }
+      shown.push_back(panel);
+    }
+    if (has_room_for(shown)) return;
+    const double height = options.height;
+    while (!has_room_for(shown) && options.height < largest) options.height += 10;
+    throw InputError(fmt::format(
+        "a page of {:g}x{:g} pixels has no room for the panels {}: they need {:g}x{:g}",
+        options.width, height, joined(shown), options.width, options.height));
   }
-  s += fmt::format("set label 1 {} at screen 0.5,0.968 center font ',20' noenhanced\n",
-                   in_quotes(heading));
-  s += views_text; // draws the label once and then unsets it
-  if (has_observables)
-    s += observables(run, frame_time, 0.01, has_frames ? 0.345 : 0.93, has_frames ? 4 : 2);
-  return s + "unset multiplot\nunset output\n";
+  // The most telling ones first.
+  for (const char* panel : {"side", "along", "radius", "space", "map", "fibre", "beads",
+                            "path", "tip", "impact"}) {
+    if ((options.movie && !is_view(panel) && panel != std::string("radius"))
+        || !any_has(panel))
+      continue;
+    std::vector<std::string> more = shown;
+    more.emplace_back(panel);
+    if (has_room_for(more))
+      shown = std::move(more);
+    else
+      left_out.emplace_back(panel);
+  }
+  if (shown.empty())
+    throw InputError(fmt::format("{} has neither frames, deposit nor observables to plot",
+                                 runs.front().of.run->path().string()));
+}
+
+// Who asked for a panel is told that nothing would be in it.
+void PlotPage::Content::refuse_if_empty(std::optional<double> until) const {
+  if (has_landed(until)) return;
+  for (const std::string& panel : options.panels)
+    if (panel == "map" || panel == "fibre")
+      throw InputError(fmt::format(
+          "cannot draw the panel {}: no bead has left at the collector by t = {:.6g} s",
+          panel, until.value_or(0)));
+}
+
+PlotPage::PlotPage(std::vector<PlottedRun> runs, std::string title, PageOptions options)
+    : content_(std::make_unique<Content>()) {
+  Content& c = *content_;
+  EHDJET_EXPECTS(!runs.empty() && runs.size() <= most_runs);
+  c.title = std::move(title), c.options = std::move(options);
+  c.options.fixed_axes = c.options.fixed_axes || c.options.movie;
+  for (const double size : {c.options.width / least_width, c.options.height / least_height,
+                            largest / c.options.width, largest / c.options.height})
+    if (!(size >= 1))
+      throw InputError(fmt::format(
+          "the page would be {:g} by {:g} pixels: the least is {:g} by {:g}, the most {:g}",
+          c.options.width, c.options.height, least_width, least_height, largest));
+  for (PlottedRun& of : runs)
+    c.runs.push_back({.of = std::move(of),
+                      .colour = colours::runs[c.runs.size()],
+                      .frame_times = {},
+                      .deposit = {},
+                      .observables = {}});
+  c.choose_panels();
+  Range most_radii;
+  for (Content::Run& run : c.runs) {
+    const RunReader& file = *run.of.run;
+    if (has_data("side", file)) run.frame_times = file.frame_times();
+    if ((c.shows("map") || c.shows("fibre")) && has_data("map", file)) {
+      run.deposit.emplace(file);
+      for (const Values* radii : {&run.deposit->radius, &run.deposit->dry_radius})
+        most_radii.include(run.deposit->most_radii(*radii));
+    }
+    if (file.has("observables")) {
+      run.observables.emplace();
+      for (const char* name : {"time", "beads", "path_length", "tip_yz", "impact_speed"})
+        run.observables->columns.push_back({name, "", file.column("observables", name)});
+    }
+    if (c.options.fixed_axes)
+      for (std::size_t k = 0; k < run.frame_times.size(); ++k)
+        c.all_frames.include(DrawnFrame(file.frame(k)));
+  }
+  c.bins = RadiusBins(most_radii);
+}
+
+PlotPage::~PlotPage() = default;
+
+const std::vector<std::string>& PlotPage::left_out() const {
+  return content_->left_out;
+}
+
+std::vector<double> PlotPage::frame_times() const {
+  for (const Content::Run& run : content_->runs)
+    if (!run.frame_times.empty()) return run.frame_times;
+  return {};
+}
+
+double PlotPage::gif_frames_per_second(double wanted) {
+  if (wanted > 50)
+    throw InputError(fmt::format(
+        "a GIF cannot show {:g} frames per second: players take what is faster than 50 for "
+        "10. Choose up to 50, or a name that ends in .mp4",
+        wanted));
+  return 100 / std::round(100 / wanted);
+}
+
+std::string PlotPage::terminal(const std::filesystem::path& output,
+                               std::optional<double> frames_per_second) const {
+  const std::string extension = output.extension().string();
+  const Canvas page = content_->canvas();
+  // `name` of gnuplot's terminal, in which letters have another height for the same number.
+  const auto set_terminal = [&](const std::string& name, double scale, double unit,
+                                const char* unit_name) {
+    return fmt::format("set encoding utf8\nset terminal {} size {:g}{},{:g}{} font "
+                       "'sans,{:.3g}' fontscale {:.3g}\n",
+                       name, page.width * unit, unit_name, page.height * unit, unit_name,
+                       0.75 * page.letter, scale);
+  };
+  if (frames_per_second && extension == ".gif")
+    // Every frame with the colours that it has: "optimize" would give all those of the first one.
+    return set_terminal(fmt::format("gif animate delay {:.0f}",
+                                    100 / gif_frames_per_second(*frames_per_second)),
+                        1, 1, "");
+  if (extension == (frames_per_second ? ".mp4" : ".png"))
+    return set_terminal("pngcairo", 1, 1, "");
+  if (frames_per_second)
+    throw InputError(fmt::format(
+        "cannot draw a movie to {}: the name must end in .gif or .mp4", output.string()));
+  if (extension == ".svg") return set_terminal("svg background '#ffffff'", 1.2, 1, "");
+  if (extension == ".pdf") return set_terminal("pdfcairo", 0.6, 1.0 / 108, "in");
+  throw InputError(fmt::format("cannot plot to {}: the name must end in .png, .svg or .pdf",
+                               output.string()));
+}
+
+std::vector<std::optional<DrawnFrame>>
+PlotPage::Content::frames(std::optional<double> time) const {
+  std::vector<std::optional<DrawnFrame>> all;
+  for (const Run& run : runs) {
+    all.emplace_back();
+    if (run.frame_times.empty()) continue;
+    std::optional<double> at = time;
+    if (time && options.movie) // a run that is over, or has not begun, stands still
+      at = std::clamp(*time, run.frame_times.front(), run.frame_times.back());
+    all.back().emplace(run.of.run->frame(run.of.run->nearest_frame(at)));
+  }
+  return all;
+}
+
+// Title, and which run at what time has which colour. Sets `top` below them.
+std::string PlotPage::Content::head(const std::vector<std::optional<DrawnFrame>>& frames,
+                                    const Canvas& page, double& top) const {
+  std::string s;
+  int label = 1;
+  const double letter = page.letter;
+  top = below_head(page, !title.empty(), runs.size());
+  double below = page.height;
+  const auto line = [&](const std::string& text, double size, const char* colour) {
+    below -= 1.45 * size;
+    s += fmt::format("set label {} {} at {} center font ',{:.3g}' noenhanced tc rgb '{}'\n",
+                     label++, Canvas::quoted(Canvas::fitted(text, size, page.width)),
+                     page.at(page.width / 2, below + 0.55 * size), 0.75 * size, colour);
+  };
+  if (!title.empty()) line(title, 1.35 * letter, "black");
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    std::string text = runs[r].of.label;
+    if (frames[r]) {
+      const Unit unit = time_unit(frames[r]->frame.time);
+      text += fmt::format(",  t = {:.6g} {},  {} beads", frames[r]->frame.time / unit.size,
+                          unit.name, frames[r]->frame.rows());
+    }
+    line((several() ? "\u2500\u2500 " : "") + text, letter,
+         several() ? runs[r].colour : "black");
+  }
+  return s;
+}
+
+std::string PlotPage::draw(std::optional<double> time) const {
+  const Content& c = *content_;
+  const Canvas page = c.canvas();
+  const auto frames = c.frames(time);
+  Extent extent = c.all_frames;
+  std::optional<double> frame_time;
+  for (const auto& f : frames)
+    if (f) {
+      if (!c.options.fixed_axes) extent.include(*f);
+      if (!frame_time) frame_time = f->frame.time;
+    }
+  const std::optional<double> until = time ? frame_time.value_or(*time) : frame_time;
+
+  c.refuse_if_empty(until);
+  double top = 0;
+  std::string s = "reset\nset border 3 lc rgb '#404040'\nset tics nomirror out scale 0.6\n"
+                  "set grid lc rgb '#E4E4E4' lw 1 lt 1\n"
+                  "set key samplen 1 opaque box lc rgb '#E4E4E4'\nset multiplot\n";
+  s += c.head(frames, page, top);
+
+  // Views of the jet above, diagrams below.
+  std::vector<Drawing> views, diagrams;
+  const auto panel = [&](Panel p) {
+    return [&page, p = std::move(p)](const Box& cell) { return page.draw(p, cell); };
+  };
+  if (c.shows("side")) views.emplace_back(panel(c.side(frames, extent, false)));
+  if (c.shows("along")) views.emplace_back(panel(c.side(frames, extent, true)));
+  if (c.shows("space"))
+    views.emplace_back([&](const Box& cell) { return c.space(frames, extent, cell); });
+  if (c.shows("radius")) diagrams.emplace_back(panel(c.radius(frames, extent)));
+  if (c.shows("map") && c.has_landed(until)) diagrams.emplace_back(panel(c.map(until)));
+  if (c.shows("fibre") && c.has_landed(until))
+    diagrams.emplace_back(panel(c.histogram(until)));
+  for (const History& h : histories)
+    if (c.shows(h.panel)) diagrams.emplace_back(panel(c.history(h, frame_time)));
+
+  return s + arranged(page, top, views, c.shows("side"), diagrams) + "unset multiplot\n";
 }
 
 } // namespace ehdjet

@@ -1,5 +1,7 @@
 #include "record_columns.hpp"
 
+#include "ehdjet/jet/link_radii.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -46,6 +48,10 @@ public:
     return rate(s.time, sum_of(s.ledgers).*sum_);
   }
 
+  void archive(const Archive& a) {
+    a("previous_time", previous_time_), a("previous", previous_);
+  }
+
 private:
   double rate(double time, double now) {
     const double elapsed = time - previous_time_;
@@ -59,6 +65,13 @@ private:
   double previous_time_ = std::numeric_limits<double>::infinity(); // [s]
   double previous_ = 0;
 };
+
+template <class Row>
+RecordColumn<Row> rate_of(CompensatedSum Ledger::*sum, const ColumnInfo& info) {
+  const auto rate = std::make_shared<Rate>(sum);
+  return {info, [rate](const Row& row) { return (*rate)(row); },
+          [rate](const Archive& a) { rate->archive(a); }};
+}
 
 /// The mean or the largest over the jets of an array of what `of` says of each.
 template <class Of>
@@ -109,14 +122,9 @@ auto computed(const std::shared_ptr<std::vector<double>>& room, Fill fill) {
 }
 
 void fill_radius(const JetSnapshot& s, std::vector<double>& values) {
-  const auto r = s.columns.position();
-  const JetState& jet = s.jet;
-  for (std::size_t k = jet.first(); k < jet.beads(); ++k)
-    values[k] = link_radius(link_volume(jet, s.columns, k), link_length(r, jet.first(), k));
-  if (jet.has_embryo)
-    values[1] = link_radius(link_volume(jet, s.columns, 1), (r[1] - r[0]).norm());
-  // Bead 0 has no link. It gets the radius of the first link, with which a drawn jet begins.
-  if (jet.first() < jet.beads()) values[0] = values[jet.first()];
+  for (std::size_t k = 1; k < values.size(); ++k)
+    values[k] = link_volume(s.jet, s.columns, k);
+  link_radii(s.columns.position(), s.jet.first(), values, values);
 }
 
 void mark_landed(const JetSnapshot& s, std::vector<double>& values) {
@@ -132,8 +140,8 @@ void mark_embryo(const JetSnapshot& s, std::vector<double>& values) {
 std::vector<RecordColumn<JetSnapshot>> observable_columns() {
   return {
       {{"time", "s", "simulated time"}, [](const auto& s) { return s.time; }},
-      {{"beads", "1", "links of the chain: all beads but the nozzle", count},
-       [](const auto& s) { return static_cast<double>(s.jet.links()); }},
+      {{"beads", "1", "of the chain, bead 0 at the nozzle included", count},
+       [](const auto& s) { return static_cast<double>(s.jet.beads()); }},
       {{"tip_x", "m", "leading bead: distance from the nozzle plane"}, tip_x},
       {{"tip_yz", "m", "leading bead: distance from the axis"}, tip_from_axis},
       {{"path_length", "m", "length of the chain, chord by chord"}, length_of_path},
@@ -143,10 +151,12 @@ std::vector<RecordColumn<JetSnapshot>> observable_columns() {
        from_ledger(&Ledger::impact_speed)},
       {{"collector_radius", "m", "of the last landed link"},
        from_ledger(&Ledger::collector_radius)},
-      {{"current_in", "A", "charge inserted since the previous row, over time"},
-       Rate(&Ledger::inserted_charge)},
-      {{"current_out", "A", "charge removed since the previous row, over time"},
-       Rate(&Ledger::removed_charge)},
+      rate_of<JetSnapshot>(
+          &Ledger::inserted_charge,
+          {"current_in", "A", "charge inserted since the previous row, over time"}),
+      rate_of<JetSnapshot>(
+          &Ledger::removed_charge,
+          {"current_out", "A", "charge removed since the previous row, over time"}),
       {{"aperture", "deg", "2 atan(tip_yz / tip_x)"}, aperture},
       {{"evaluations", "1", "of the right-hand side, so far", count},
        from_statistics(&RunStatistics::evaluations)},
@@ -169,14 +179,14 @@ std::vector<RecordColumn<JetSnapshot>> observable_columns() {
 }
 
 std::vector<RecordColumn<ArraySnapshot>> array_observable_columns() {
-  const auto links = [](const ArraySnapshot& s) {
+  const auto beads = [](const ArraySnapshot& s) {
     double sum = 0;
-    for (const JetState& jet : s.jets) sum += static_cast<double>(jet.links());
+    for (const JetState& jet : s.jets) sum += static_cast<double>(jet.beads());
     return sum;
   };
   return {
       {{"time", "s", "simulated time"}, [](const auto& s) { return s.time; }},
-      {{"beads", "1", "links of all jets", count}, links},
+      {{"beads", "1", "of all jets, those at the nozzles included", count}, beads},
       {{"tip_x", "m", "leading bead: distance from the nozzle plane, the largest"},
        largest(tip_x)},
       {{"tip_yz", "m", "leading bead: distance from the axis of the array, the largest"},
@@ -188,10 +198,12 @@ std::vector<RecordColumn<ArraySnapshot>> array_observable_columns() {
        from_ledgers(&Ledger::impact_speed)},
       {{"collector_radius", "m", "of the last landed link of a jet: mean"},
        from_ledgers(&Ledger::collector_radius)},
-      {{"current_in", "A", "charge inserted since the previous row, over time: sum"},
-       Rate(&Ledger::inserted_charge)},
-      {{"current_out", "A", "charge removed since the previous row, over time: sum"},
-       Rate(&Ledger::removed_charge)},
+      rate_of<ArraySnapshot>(
+          &Ledger::inserted_charge,
+          {"current_in", "A", "charge inserted since the previous row, over time: sum"}),
+      rate_of<ArraySnapshot>(
+          &Ledger::removed_charge,
+          {"current_out", "A", "charge removed since the previous row, over time: sum"}),
       {{"aperture", "deg", "2 atan(tip_yz / tip_x) of a jet, the largest"},
        largest(aperture)},
       {{"evaluations", "1", "of the right-hand side of all jets together, so far", count},
@@ -213,9 +225,9 @@ std::vector<RecordColumn<RefinementRecord>> refinement_columns() {
       {{"time", "s", "of the refinement"}, [](const auto& r) { return r.time; }},
       {{"kept", "1", "beads 0 to this one were left as they were", count},
        number_of(&RefinementRecord::kept)},
-      {{"beads_before", "1", "links of the chain before", count},
+      {{"beads_before", "1", "of the chain before", count},
        number_of(&RefinementRecord::beads_before)},
-      {{"beads_after", "1", "links of the chain afterwards", count},
+      {{"beads_after", "1", "of the chain afterwards", count},
        number_of(&RefinementRecord::beads_after)},
       {{"mass_change", "kg", "of the chain's sum"}, change_of(&JetTotals::mass)},
       {{"charge_change", "C", "of the chain's sum"}, change_of(&JetTotals::charge)},
@@ -274,7 +286,7 @@ std::vector<RunTable::Column> further_columns(const Frame& frame) {
   return further;
 }
 
-std::vector<BeadRange> jets_of(const Frame& frame) {
+std::vector<BeadRange> jets_of(const RunTable& frame) {
   const RunTable::Column* jet = frame.find("jet");
   if (jet == nullptr) return {{0, frame.rows()}};
   std::vector<BeadRange> jets;
@@ -285,7 +297,7 @@ std::vector<BeadRange> jets_of(const Frame& frame) {
   return jets;
 }
 
-std::vector<double> column_or_zeros(const Frame& frame, std::string_view name) {
+std::vector<double> column_or_zeros(const RunTable& frame, std::string_view name) {
   const RunTable::Column* found = frame.find(name);
   return found != nullptr ? found->values : std::vector<double>(frame.rows());
 }
@@ -324,6 +336,16 @@ deposit_columns(std::shared_ptr<const BeadTable> table) {
   const auto volume = std::ranges::find(columns, "volume", &ColumnInfo::name);
   std::rotate(volume, volume + 1, volume + BeadTable::basic_carried);
   return columns;
+}
+
+std::vector<double> link_lengths(const RunTable& deposit) {
+  const auto &volume = deposit["volume"], &radius = deposit["radius"];
+  const RunTable::Column* lost = deposit.find(evaporated);
+  std::vector<double> lengths(deposit.rows());
+  for (std::size_t k = 0; k < lengths.size(); ++k)
+    lengths[k] = volume[k] * (lost != nullptr ? 1 - lost->values[k] : 1)
+                 / (std::numbers::pi * radius[k] * radius[k]);
+  return lengths;
 }
 
 } // namespace ehdjet

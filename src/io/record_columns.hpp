@@ -22,7 +22,19 @@ namespace ehdjet {
 template <class Row>
 struct RecordColumn : ColumnInfo {
   std::function<double(const Row&)> value;
+  /// What the values of later rows depend on; empty if nothing.
+  std::function<void(const Archive&)> archive = {};
 };
+
+/// Archives the columns of a part of a run file.
+template <class Row>
+void archive(const Archive& a, const char* part,
+             const std::vector<RecordColumn<Row>>& columns) {
+  const Archive own = a.part(part);
+  if (a.is_reading() && own.names().empty()) return;
+  for (const auto& c : columns)
+    if (c.archive) c.archive(own.part(c.name));
+}
 
 std::vector<RecordColumn<JetSnapshot>> observable_columns();
 /// The same names for all jets of an array: sums, means and largest values, as their descriptions say.
@@ -32,6 +44,8 @@ std::vector<RecordColumn<ArraySnapshot>> array_observable_columns();
 /// For beads that have the columns of `table`. The deposit always has a column `stress`.
 std::vector<RecordColumn<DepositedBead>>
 deposit_columns(std::shared_ptr<const BeadTable> table);
+/// Of deposited links, from the volume that they have when they leave the chain [m].
+std::vector<double> link_lengths(const RunTable& deposit);
 std::vector<RecordColumn<RefinementRecord>> refinement_columns();
 
 /// A value that each bead of a frame has.
@@ -46,8 +60,8 @@ std::shared_ptr<const BeadTable> exported_table();
 /// The columns of a frame that are not in `frame_columns(*exported_table())`.
 std::vector<RunTable::Column> further_columns(const Frame& frame);
 /// The rows of each jet of a frame: one range, unless the run has an array.
-std::vector<BeadRange> jets_of(const Frame& frame);
+std::vector<BeadRange> jets_of(const RunTable& frame);
 /// A column of a frame, or zeros if the frame does not have it.
-std::vector<double> column_or_zeros(const Frame& frame, std::string_view name);
+std::vector<double> column_or_zeros(const RunTable& frame, std::string_view name);
 
 } // namespace ehdjet

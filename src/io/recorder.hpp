@@ -62,25 +62,26 @@ private:
 /// Where the frames of /beads end, and their times.
 class FrameTimes {
 public:
-  explicit FrameTimes(RunFile& file)
+  /// `beads`: a column of /beads.
+  FrameTimes(RunFile& file, const Column& beads)
       : time_(file.add_column("frames", {"time", "s", "of each frame"}, chunk_rows))
       , offset_(file.add_column("frames",
                                 {"offset", "1",
                                  "frame k is the rows offset[k] to offset[k+1] of /beads",
-                                 ColumnType::count},
-                                chunk_rows)) {
-    offset_.append(0);
+                                 ColumnType::count, "offset"},
+                                chunk_rows))
+      , beads_(beads) {
+    if (offset_.rows() == 0) offset_.append(0);
   }
   /// After the beads of a frame have been appended.
-  void append(double time, std::size_t beads) {
-    rows_ += beads;
+  void append(double time) {
     time_.append(time);
-    offset_.append(static_cast<double>(rows_)); // last: it completes the frame
+    offset_.append(static_cast<double>(beads_.rows())); // last: it completes the frame
   }
 
 private:
   Column &time_, &offset_;
-  std::size_t rows_ = 0;
+  const Column& beads_;
 };
 
 /// Removes the column of that name unless it is `wanted`.

@@ -24,11 +24,13 @@ public:
          std::vector<RecordColumn<Row>> columns, std::optional<double> interval = {},
          std::size_t rows_of_chunk = chunk_rows)
       : Recorder(std::move(file), interval)
+      , part_(part)
       , columns_(std::move(columns)) {
     for (const auto& c : columns_)
       data_sets_.push_back(&file_->add_column(part, c, rows_of_chunk));
     file_->flush();
   }
+  void archive(const Archive& a) override { ehdjet::archive(a, part_, columns_); }
 
   void deposit(const DepositedBead& bead) override {
     if constexpr (std::is_same_v<Row, DepositedBead>)
@@ -48,6 +50,7 @@ private:
       data_sets_[i]->append(columns_[i].value(row));
   }
 
+  const char* part_;
   std::vector<RecordColumn<Row>> columns_;
   std::vector<Column*> data_sets_;
 };
@@ -73,7 +76,7 @@ public:
       , columns_(frame_columns(table)) {
     for (const FrameColumn& c : columns_)
       data_sets_.push_back(&file_->add_column("beads", c, 4 * chunk_rows));
-    times_ = std::make_unique<FrameTimes>(*file_);
+    times_ = std::make_unique<FrameTimes>(*file_, *data_sets_.front());
     file_->flush();
   }
 
@@ -82,7 +85,7 @@ private:
     EHDJET_EXPECTS(snapshot.columns.beads == snapshot.jet.beads());
     for (std::size_t i = 0; i < columns_.size(); ++i)
       data_sets_[i]->append(columns_[i].values(snapshot));
-    times_->append(snapshot.time, snapshot.jet.beads());
+    times_->append(snapshot.time);
   }
 
   std::vector<FrameColumn> columns_;
@@ -96,14 +99,16 @@ public:
       : Recorder(std::move(file), interval)
       , link_length_(link_length)
       , time_(add({"time", "s", "of each sample"}, chunk_rows))
-      , power_(add(
-            {"r", "1", "R = link_length/l at all values of lambda, sample after sample"},
-            places * 64)) {
+      , power_(
+            add({"r", "1", "R = link_length/l at all values of lambda, sample after sample",
+                 ColumnType::real, "r"},
+                places * 64)) {
     EHDJET_EXPECTS(link_length > 0);
-    Column& lambda =
-        add({"lambda", "1", "arc length from the nozzle over the jet's"}, places);
+    Column& lambda = add({"lambda", "1", "arc length from the nozzle over the jet's",
+                          ColumnType::real, "lambda"},
+                         places);
     file_->write([&] {
-      for (std::size_t i = 0; i < places; ++i) lambda.append(at(i));
+      for (std::size_t i = lambda.rows(); i < places; ++i) lambda.append(at(i));
     });
     file_->flush();
   }

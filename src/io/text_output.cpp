@@ -4,31 +4,30 @@
 
 #include <cerrno>
 #include <cstring>
-#include <system_error>
 
 namespace ehdjet {
 
-void refuse_existing(const std::filesystem::path& path, bool overwrite) {
-  std::error_code ignored;
-  if (!overwrite && std::filesystem::exists(path, ignored))
-    throw InputError(path.string()
-                     + " exists: choose another name with -o or overwrite it with --force");
-}
-
-TextOutput::TextOutput(const std::filesystem::path& path, bool overwrite)
+TextOutput::TextOutput(const std::filesystem::path& path, bool overwrite,
+                       const std::filesystem::path& input)
     : path_(path) {
-  refuse_existing(path, overwrite);
+  if (!input.empty()) refuse_input(path, input);
+  target_.emplace(path, overwrite);
 }
 
-void TextOutput::close() {
+void TextOutput::complete() {
   drain();
+  text_ = fmt::memory_buffer(); // many that wait for each other must not keep their memory
   if (std::FILE* file = file_.release(); file != nullptr && std::fclose(file) != 0)
     fail(errno);
 }
 
+void TextOutput::publish() {
+  if (target_) target_->publish();
+}
+
 void TextOutput::drain() {
-  if (!file_ && !path_.empty()) {
-    file_.reset(std::fopen(path_.c_str(), "wb"));
+  if (!file_ && target_) {
+    file_.reset(std::fopen(target_->create().c_str(), "wb"));
     if (!file_)
       throw InputError("cannot create " + path_.string() + ": " + std::strerror(errno));
   }

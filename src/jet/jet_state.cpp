@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <iterator>
 #include <numbers>
 #include <string>
@@ -33,22 +34,22 @@ void archive_columns(const Archive& a, JetState& jet) {
     a(table.carried()[c].name, jet.carried(c));
   for (std::size_t c = 0; c < table.carried().size(); ++c)
     equally_long &= jet.carried(c).size() == jet.beads();
+  for (std::size_t c = 0; c < table.carried().size(); ++c)
+    a.require(table.carried()[c].name, all_finite(jet.carried(c)), "is not finite");
+  a.require("mass", none_negative(jet.mass), "is negative");
+  a.require("volume", none_negative(jet.volume), "is negative");
   for (std::size_t c = 0; c < table.integrated().size(); ++c) {
     std::vector<double> column;
     if (!a.is_reading())
       column.assign(jet.columns().column(c).begin(), jet.columns().column(c).end());
     a(table.integrated()[c].name, column);
     equally_long &= column.size() == jet.beads();
+    a.require(table.integrated()[c].name, all_finite(column), "is not finite");
     y.insert(y.end(), column.begin(), column.end());
   }
   if (jet.beads() < 2 || !equally_long)
     throw InputError("the checkpoint is damaged: its columns have different lengths");
   jet.y = std::move(y);
-}
-
-bool has_name(const Archive& a, std::string_view name) {
-  const auto names = a.names();
-  return std::ranges::find(names, name) != names.end();
 }
 
 auto at_offset(std::vector<double>& v, std::size_t i) {
@@ -65,14 +66,7 @@ bool JetState::is_landed(std::size_t bead) const {
 void archive(const Archive& a, JetState& jet) {
   a("time", jet.time), archive_columns(a.part("columns"), jet);
   a("has_embryo", jet.has_embryo), a("absorbing_plane", jet.absorbing_plane);
-  // Only a jet that is fed has it.
-  if (a.is_reading()) jet.fed_since = 0;
-  if (a.is_reading() ? has_name(a, "fed_since") : jet.fed_since != 0)
-    a("fed_since", jet.fed_since);
-  // Only one whose field is switched.
-  if (a.is_reading()) jet.field_is_off = false;
-  if (a.is_reading() ? has_name(a, "field_is_off") : jet.field_is_off)
-    a("field_is_off", jet.field_is_off);
+  a("fed_since", jet.fed_since), a("field_is_off", jet.field_is_off);
   archive(a.part("mat"), jet.mat);
   std::vector<double> bead, time, radius;
   for (const LandedBead& l : jet.landed) {
@@ -81,8 +75,23 @@ void archive(const Archive& a, JetState& jet) {
   }
   a("landed_bead", bead), a("landed_time", time), a("landed_radius", radius);
   if (!a.is_reading()) return;
-  if (time.size() != bead.size() || radius.size() != bead.size())
-    throw InputError("the checkpoint is damaged: its landed beads have different lengths");
+  const auto whole = [&](double k) {
+    return k == std::floor(k) && k >= 0 && k < static_cast<double>(jet.beads());
+  };
+  const auto is_past = [&](double t) { return t >= 0 && t <= jet.time; };
+  a.require("time", std::isfinite(jet.time) && jet.time >= 0, "is no time of a run");
+  a.require("has_embryo", jet.beads() > jet.first(), "needs more beads");
+  a.require("absorbing_plane", std::isfinite(jet.absorbing_plane.value_or(0)),
+            "is not finite");
+  a.require("fed_since", is_past(jet.fed_since), "is not in the past");
+  a.require("landed_bead", std::ranges::all_of(bead, whole), "is no bead of the chain");
+  a.require("landed_bead",
+            std::ranges::adjacent_find(bead, std::greater_equal{}) == bead.end(),
+            "is not in order");
+  a.require("landed_time", time.size() == bead.size(), "has another length");
+  a.require("landed_time", std::ranges::all_of(time, is_past), "is not in the past");
+  a.require("landed_radius", radius.size() == bead.size(), "has another length");
+  a.require("landed_radius", none_negative(radius), "is negative");
   jet.landed.clear();
   for (std::size_t i = 0; i < bead.size(); ++i)
     jet.landed.push_back({static_cast<std::size_t>(bead[i]), time[i], radius[i]});

@@ -1,5 +1,7 @@
 #include "ehdjet/jet/ledger.hpp"
 
+#include <cmath>
+
 namespace ehdjet {
 
 void archive(const Archive& a, Ledger& l) {
@@ -9,6 +11,8 @@ void archive(const Archive& a, Ledger& l) {
   a("inserted_volume", l.inserted_volume), a("removed_volume", l.removed_volume);
   a("release_speed", l.release_speed), a("impact_speed", l.impact_speed);
   a("collector_radius", l.collector_radius);
+  a.require("release_speed", std::isfinite(l.release_speed), "is not finite");
+  a.require("impact_speed", std::isfinite(l.impact_speed), "is not finite");
 }
 
 Ledger sum_of(std::span<const Ledger> ledgers) {
@@ -43,6 +47,10 @@ void archive(const Archive& a, RunStatistics& s) {
   a("coincident_pairs", s.coincident_pairs);
   a("shortest_step", s.shortest_step), a("longest_step", s.longest_step);
   a("wall_time", s.wall_time);
+  a.require("shortest_step", s.shortest_step > 0, "is not positive");
+  a.require("longest_step", s.longest_step >= 0 && std::isfinite(s.longest_step),
+            "is no length of a step");
+  a.require("wall_time", s.wall_time >= 0 && std::isfinite(s.wall_time), "is no time");
 }
 
 } // namespace ehdjet

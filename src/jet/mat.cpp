@@ -22,18 +22,26 @@ std::shared_ptr<const Mat> with_charge(const std::shared_ptr<const Mat>& mat,
 }
 
 void archive(const Archive& a, std::shared_ptr<const Mat>& mat) {
-  if (a.is_reading() ? a.names().empty() : !mat) {
-    mat.reset();
-    return;
-  }
-  auto copy = a.is_reading() ? std::make_shared<Mat>() : std::make_shared<Mat>(*mat);
+  // The lists are there without a mat, too: all checkpoints of a run have the same ones.
+  auto copy =
+      mat && !a.is_reading() ? std::make_shared<Mat>(*mat) : std::make_shared<Mat>();
+  std::optional<double> time;
+  if (mat) time = mat->time;
   a("x", copy->x), a("y", copy->y), a("z", copy->z), a("charge", copy->charge);
-  a("time", copy->time);
+  a("time", time);
+  if (!a.is_reading()) return;
+  copy->time = time.value_or(0);
+  a.require("x", all_finite(copy->x), "is not finite");
+  a.require("y", all_finite(copy->y), "is not finite");
+  a.require("z", all_finite(copy->z), "is not finite");
+  a.require("charge", all_finite(copy->charge), "is not finite");
+  a.require("time", std::isfinite(copy->time), "is not finite");
   const std::size_t n = copy->size();
-  if (copy->x.size() != n || copy->y.size() != n || copy->z.size() != n)
-    throw InputError("the checkpoint is damaged: the columns of the mat have different "
-                     "lengths");
-  mat = std::move(copy);
+  a.require("charge", copy->x.size() == n && copy->y.size() == n && copy->z.size() == n,
+            "has another length than the places");
+  a.require("time", time.has_value() == (n > 0), "does not agree with charge");
+  mat.reset();
+  if (n > 0) mat = std::move(copy);
 }
 
 } // namespace ehdjet

@@ -65,4 +65,14 @@ void ExtrapolatedField::add_to_past(std::span<const double> field, std::size_t b
   beads_ = beads;
 }
 
+void ExtrapolatedField::archive_past(const Archive& a, std::size_t beads) {
+  a("beads", beads_), a("known", known_);
+  a("old_time", past_[0].time), a("old_field", past_[0].field);
+  a("last_time", past_[1].time), a("last_field", past_[1].field);
+  bool fits = known_ <= past_.size() && (known_ == 0 || beads_ == beads);
+  for (std::size_t i = 0; fits && i < known_; ++i)
+    fits = past_[i].field.size() == 3 * beads;
+  a.require("known", fits, "does not agree with the lists");
+}
+
 } // namespace ehdjet

@@ -27,6 +27,13 @@ void DryFibre::deposit(const DepositedBead& d) {
   evaporated_ += length * lost, speed_ += length * d.bead.velocity.norm();
 }
 
+void DryFibre::archive(const Archive& a) {
+  const Archive own = a.part("dry_fibre");
+  if (a.is_reading() && own.names().empty()) return;
+  own("from", from_), own("length", length_), own("diameter", diameter_);
+  own("square", square_), own("evaporated", evaporated_), own("speed", speed_);
+}
+
 std::optional<DryFibre::Summary> DryFibre::summary() const {
   if (!(length_ > 0)) return std::nullopt;
   const double mean = diameter_ / length_;

@@ -1,6 +1,8 @@
 #include "ehdjet/core/error.hpp"
 #include "ehdjet/refinement/refine_jet.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <vector>
 
 namespace ehdjet {
@@ -26,13 +28,24 @@ bool is_stub(const JetState& jet, const RefinementRule& rule, std::size_t k,
          && length < *rule.shortest * link_radius(link_volume(jet, k), length);
 }
 
+// Whether links k and k + 1 would be one that is cut into stubs at once, which would be joined again for ever.
+bool would_be_cut_into_stubs(const JetState& jet, const RefinementRule& rule,
+                             std::size_t k) {
+  const auto r = jet.columns().position();
+  const double both = (r[k + 1] - r[k - 1]).norm();
+  const double part = both / std::max(std::ceil(both / rule.length), 1.0);
+  const double radius = link_radius(link_volume(jet, k) + link_volume(jet, k + 1), both);
+  return part < both && part < *rule.shortest * radius;
+}
+
 // Whether links k and k + 1 are to become one.
 bool joins_next(const JetState& jet, const RefinementRule& rule, std::size_t k) {
+  if (jet.is_landed(k) || jet.is_landed(k + 1)) return false;
   const auto r = jet.columns().position();
   const double own = (r[k] - r[k - 1]).norm(), next = (r[k + 1] - r[k]).norm();
-  const bool too_short = (rule.coarsen && own + next <= *rule.coarsen)
-                         || is_stub(jet, rule, k, own) || is_stub(jet, rule, k + 1, next);
-  return too_short && !jet.is_landed(k) && !jet.is_landed(k + 1);
+  if (rule.coarsen && own + next <= *rule.coarsen) return true;
+  return (is_stub(jet, rule, k, own) || is_stub(jet, rule, k + 1, next))
+         && !would_be_cut_into_stubs(jet, rule, k);
 }
 
 // The first link is being fed and its bead triggers the next insertion.

@@ -45,7 +45,12 @@ Column::Column(const hdf5::Handle& group, const ColumnInfo& info, std::size_t ch
     , chunk_rows_(chunk_rows)
     , chunk_(chunk_rows * row_size_) {
   hdf5::write_attribute(*dataset_, "unit", info.unit);
+  hdf5::write_attribute(*dataset_, "units", info.unit); // so called by netCDF and xarray
   hdf5::write_attribute(*dataset_, "description", info.description);
+  if (info.scale == info.name)
+    hdf5::make_scale(*dataset_, info.name.c_str());
+  else if (hdf5::has(group, info.scale.c_str()))
+    hdf5::attach_scale(*dataset_, group, info.scale.c_str());
 }
 
 Column::~Column() = default;

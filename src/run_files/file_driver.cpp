@@ -6,7 +6,9 @@
 #include <fcntl.h>
 #include <iterator>
 #include <new>
+#include <string>
 #include <sys/stat.h>
+#include <system_error>
 #include <unistd.h>
 
 namespace ehdjet::hdf5 {
@@ -18,6 +20,19 @@ constexpr hsize_t page = 4096;
 haddr_t fit(haddr_t address, hsize_t size) {
   const bool crosses = size <= page && address % page + size > page;
   return crosses ? (address / page + 1) * page : address;
+}
+
+// Locks an open file until it is closed. Returns false if another lock stands against it.
+bool lock(int descriptor, int type) {
+#ifdef F_OFD_SETLK
+  struct flock whole {};
+  whole.l_type = static_cast<short>(type), whole.l_whence = SEEK_SET;
+  return ::fcntl(descriptor, F_OFD_SETLK, &whole) == 0 // NOLINT: POSIX declares it so
+         || (errno != EACCES && errno != EAGAIN);
+#else
+  (void)type;
+  return descriptor >= 0;
+#endif
 }
 
 } // namespace
@@ -50,6 +65,15 @@ haddr_t FreeSpace::take(hsize_t size) {
     return address;
   }
   return HADDR_UNDEF;
+}
+
+ReplaceLock::ReplaceLock(const char* path)
+    : descriptor_(::open(path, O_RDWR | O_CLOEXEC)) { // NOLINT: POSIX declares it so
+  refused_ = descriptor_ >= 0 && !lock(descriptor_, F_WRLCK);
+}
+
+ReplaceLock::~ReplaceLock() {
+  if (descriptor_ >= 0) ::close(descriptor_);
 }
 
 // Position in the order of a commit. A chunk index is a tree whose nodes begin with "TREE", node
@@ -91,6 +115,19 @@ haddr_t FileDriver::allocate(hsize_t size) {
   }
   new_[address] = size;
   return address;
+}
+
+// HDF5 moves the end when it opens a file, and when it enlarges the last block. What that adds is as new as a
+// block of its own: if it waited with the rewrites, others could refer to it before it is there.
+void FileDriver::set_end(haddr_t end) {
+  const haddr_t begin = std::max(end_, committed_end_);
+  end_ = end;
+  if (end <= begin) return;
+  const auto last = new_.empty() ? new_.end() : std::prev(new_.end());
+  if (last != new_.end() && last->first + last->second == begin)
+    last->second += end - begin;
+  else
+    new_[begin] = end - begin;
 }
 
 void FileDriver::release(haddr_t address, hsize_t size) {
@@ -144,13 +181,27 @@ bool FileDriver::write_now(haddr_t address, std::size_t size, const unsigned cha
   return true;
 }
 
-void FileDriver::commit() {
-  if (error_ != 0) return;
+// The length is set first: a file shorter than its superblock says counts as truncated.
+bool FileDriver::extend() {
+  if (room_ > 0 && room_end_ < end_ + room_) {
+    const int refused =
+        ::posix_fallocate(descriptor_, static_cast<off_t>(end_), static_cast<off_t>(room_));
+    if (refused == ENOSPC || refused == EFBIG || refused == EDQUOT) {
+      abandon(refused);
+      return false;
+    }
+    if (refused == 0) room_end_ = end_ + room_;
+  }
   struct stat status {};
-  // The length is set first: a file shorter than its superblock says counts as truncated.
-  if (::fstat(descriptor_, &status) == 0 && static_cast<haddr_t>(status.st_size) < end_
-      && ::ftruncate(descriptor_, static_cast<off_t>(end_)) != 0)
-    return abandon(errno);
+  if (::fstat(descriptor_, &status) != 0 || static_cast<haddr_t>(status.st_size) >= end_
+      || ::ftruncate(descriptor_, static_cast<off_t>(end_)) == 0)
+    return true;
+  abandon(errno);
+  return false;
+}
+
+void FileDriver::commit() {
+  if (error_ != 0 || !extend()) return;
   std::stable_sort(rewrites_.begin(), rewrites_.end(),
                    [](const Rewrite& a, const Rewrite& b) { return a.rank() < b.rank(); });
   for (const Rewrite& held : rewrites_)
@@ -161,6 +212,26 @@ void FileDriver::commit() {
   old_.clear();
   committed_end_ = end_;
   ever_committed_ = true;
+}
+
+void FileDriver::sync() {
+  if (error_ != 0 || ::fdatasync(descriptor_) == 0) return;
+  if (errno != EINVAL && errno != ENOSYS && errno != EROFS) abandon(errno);
+}
+
+std::filesystem::path FileDriver::place(const std::filesystem::path& name) const {
+  struct stat own {
+  }, there{};
+  const auto has_name = [&](const std::filesystem::path& path) {
+    return ::stat(path.c_str(), &there) == 0 && there.st_dev == own.st_dev
+           && there.st_ino == own.st_ino;
+  };
+  if (::fstat(descriptor_, &own) != 0 || has_name(name)) return name;
+  if (own.st_nlink == 0) return {};
+  std::error_code error;
+  const auto now =
+      std::filesystem::read_symlink("/proc/self/fd/" + std::to_string(descriptor_), error);
+  return !error && has_name(now) ? now : name;
 }
 
 void FileDriver::abandon(int error) {
@@ -187,6 +258,7 @@ struct FileDriver::Callbacks {
       return nullptr;
     }
     struct stat status {};
+    if ((flags & H5F_ACC_RDWR) != 0) (void)lock(descriptor, F_RDLCK); // see ReplaceLock
     file->descriptor_ = descriptor;
     file->ever_committed_ = ::fstat(descriptor, &status) == 0 && status.st_size > 0;
     file->committed_end_ = static_cast<haddr_t>(status.st_size);
@@ -195,8 +267,9 @@ struct FileDriver::Callbacks {
   static herr_t close(H5FD_t* file) noexcept {
     FileDriver& driver = self(file);
     if (!driver.rewrites_.empty() || !driver.new_.empty()) driver.commit();
-    const bool ok =
-        ::ftruncate(driver.descriptor_, static_cast<off_t>(driver.committed_end_)) == 0;
+    haddr_t end = driver.committed_end_;
+    if (driver.error_ != 0) end = std::max(end, driver.room_end_);
+    const bool ok = ::ftruncate(driver.descriptor_, static_cast<off_t>(end)) == 0;
     const bool closed = ::close(driver.descriptor_) == 0;
     delete &driver;
     return ok && closed ? 0 : -1;
@@ -216,7 +289,7 @@ struct FileDriver::Callbacks {
     return self(file).end_;
   }
   static herr_t set_allocated_end(H5FD_t* file, H5FD_mem_t, haddr_t end) noexcept {
-    self(file).end_ = end;
+    self(file).set_end(end);
     return 0;
   }
   static haddr_t length(const H5FD_t* file, H5FD_mem_t) noexcept {

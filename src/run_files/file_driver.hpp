@@ -6,6 +6,7 @@
 #endif
 
 #include <cstddef>
+#include <filesystem>
 #include <map>
 #include <utility>
 #include <vector>
@@ -24,6 +25,24 @@ private:
   std::map<haddr_t, hsize_t> parts_; ///< size by address
 };
 
+/// The right to replace a file, which nobody has while a run writes it or another one replaces it. A file
+/// system without locks always gives it.
+///
+/// A run holds a shared lock on its file, which other programs can therefore read. Who wants to replace
+/// the file asks for an exclusive one.
+class ReplaceLock {
+public:
+  explicit ReplaceLock(const char* path);
+  ~ReplaceLock();
+  ReplaceLock(const ReplaceLock&) = delete;
+  ReplaceLock& operator=(const ReplaceLock&) = delete;
+  [[nodiscard]] bool is_refused() const { return refused_; }
+
+private:
+  int descriptor_;
+  bool refused_ = false;
+};
+
 /// The HDF5 file driver of run files: every commit is a transaction.
 ///
 /// HDF5 rewrites its indices in place and in an arbitrary order. If the process were killed during
@@ -36,7 +55,7 @@ private:
 /// laws   : a process killed at any instant leaves the last commit, or the next one, or the next
 ///          one with some data sets still at their old length; so does a full disk
 /// cost   : the rewritten parts in memory, a few hundred bytes per data set
-/// errors : a crash of the machine may damage the file, because there is no fsync
+/// errors : a crash of the machine after a commit that was not followed by `sync` may damage the file
 /// checked: dying_within_any_write_of_a_small_run_keeps_the_last_flush
 class FileDriver : public H5FD_t {
 public:
@@ -48,8 +67,15 @@ public:
 
   /// Makes everything that HDF5 has written part of the file. Must be called after H5Fflush.
   void commit();
+  /// Each commit from now on keeps `size` bytes of the disk behind the end of the file. If a later one fails,
+  /// they are still there when the file is opened again. 0: the next commits may use them.
+  void keep_room(hsize_t size) { room_ = size; }
   /// Marks `size` bytes at `address` as free after the next commit.
   void release(haddr_t address, hsize_t size);
+  /// Sees to it that the last commit survives a crash of the machine.
+  void sync();
+  /// The path of the file: `name`, another one if it was renamed, empty if it was removed or replaced.
+  [[nodiscard]] std::filesystem::path place(const std::filesystem::path& name) const;
   /// Stops all writing. Closing the file then leaves the last commit.
   void abandon(int error);
   /// errno of the write that failed; 0 if none has failed.
@@ -66,15 +92,19 @@ private:
   struct Callbacks;
 
   haddr_t allocate(hsize_t size);
+  void set_end(haddr_t end);
   bool read(haddr_t address, std::size_t size, unsigned char* to);
   bool write(H5FD_mem_t type, haddr_t address, std::size_t size, const unsigned char* from);
   bool write_now(haddr_t address, std::size_t size, const unsigned char* from);
   [[nodiscard]] bool is_new(haddr_t address, std::size_t size) const;
+  bool extend();
 
   int descriptor_ = -1;
   int error_ = 0;
   bool ever_committed_ = false;
   haddr_t end_ = 0, committed_end_ = 0;
+  hsize_t room_ = 0;
+  haddr_t room_end_ = 0;                         ///< what the disk has for sure
   std::map<haddr_t, hsize_t> new_;               ///< allocated since the last commit
   std::vector<std::pair<haddr_t, hsize_t>> old_; ///< free after the next commit
   FreeSpace free_;                               ///< free now

@@ -2,8 +2,14 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
+#include <cmath>
+#include <fcntl.h>
 #include <limits>
+#include <string_view>
+#include <sys/file.h>
 #include <system_error>
+#include <unistd.h>
 
 namespace ehdjet {
 namespace {
@@ -25,6 +31,33 @@ herr_t add_name(hid_t, const char* name, const H5L_info_t*, void* names) {
   return 0;
 }
 
+/// Whether another program has locked the file.
+bool is_locked(const std::filesystem::path& path) {
+  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC); // NOLINT
+  if (file < 0) return false;
+  const bool locked = ::flock(file, LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+  ::close(file);
+  return locked;
+}
+
+/// HDF5 locks what it reads. Where the file system has no locks, the file is read all the same.
+hdf5::Handle open_for_reading(const std::filesystem::path& path) {
+  try {
+    return {H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose};
+  } catch (const hdf5::Failure&) {
+    if (is_locked(path)) throw;
+  }
+  const hdf5::Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+  hdf5::check(H5Pset_file_locking(access, false, true));
+  return {H5Fopen(path.c_str(), H5F_ACC_RDONLY, access), H5Fclose};
+}
+
+// In names and units, which exports repeat.
+bool is_harmless(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9')
+         || std::string_view(" _-+*.^/()%").find(c) != std::string_view::npos;
+}
+
 } // namespace
 
 ReadableFile::ReadableFile(const std::filesystem::path& path)
@@ -33,12 +66,14 @@ ReadableFile::ReadableFile(const std::filesystem::path& path)
   std::error_code ignored;
   if (!std::filesystem::exists(path, ignored)) reject("does not exist");
   if (std::filesystem::is_directory(path, ignored)) reject("is a folder, not a run file");
+  if (!std::filesystem::is_regular_file(path, ignored)) reject("is not a regular file");
   const htri_t is_hdf5 = H5Fis_hdf5(path.c_str());
   if (is_hdf5 < 0) reject("cannot be opened");
   if (is_hdf5 == 0) reject("is not an HDF5 file");
   try {
-    file_ = {H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose};
+    file_ = open_for_reading(path);
   } catch (const hdf5::Failure& failure) {
+    if (is_locked(path)) reject("is open for writing in another program");
     reject(fmt::format("is no readable HDF5 file: it is damaged or truncated ({})",
                        failure.what()));
   }
@@ -59,21 +94,31 @@ void ReadableFile::require(const std::string& part) const {
 const ReadableFile::DataSet& ReadableFile::data_set(const std::string& name) {
   if (const auto found = data_sets_.find(name); found != data_sets_.end())
     return found->second;
-  if (!has(name.substr(0, name.find('/'))) || !has(name))
-    reject(fmt::format("has no dataset /{}", name));
-  hdf5::Handle opened(H5Dopen2(file_, name.c_str(), H5P_DEFAULT), H5Dclose);
-  const hdf5::Handle space(H5Dget_space(opened), H5Sclose);
-  if (H5Sget_simple_extent_ndims(space) != 1)
-    reject(fmt::format("/{} is not one-dimensional", name));
+  if (!std::ranges::all_of(name, is_harmless))
+    reject(
+        "is damaged: a data set has a name with other characters than letters, digits and "
+        "_-+*.^()%");
+  hdf5::Handle opened = hdf5::open_rows(file_, name);
   // Files of other programs need not have units.
   std::string unit =
       hdf5::has_attribute(opened, "unit") ? hdf5::read_text_attribute(opened, "unit") : "1";
+  if (!std::ranges::all_of(unit, is_harmless) || unit.size() > 64)
+    reject(fmt::format("is damaged: /{} has an attribute unit that is no unit", name));
   return data_sets_[name] = {std::move(opened), std::move(unit)};
+}
+
+void ReadableFile::expect_finite(const std::string& name,
+                                 const std::vector<double>& values) const {
+  const auto bad =
+      std::ranges::find_if(values, [](double value) { return !std::isfinite(value); });
+  if (bad != values.end())
+    reject(fmt::format("is damaged: row {} of those read of /{} is {}",
+                       bad - values.begin(), name, *bad));
 }
 
 std::vector<std::string> ReadableFile::names_in(const std::string& group) const {
   std::vector<std::string> names;
-  const hdf5::Handle handle(H5Gopen2(file_, group.c_str(), H5P_DEFAULT), H5Gclose);
+  const hdf5::Handle handle = hdf5::open_group(file_, group);
   hdf5::check(H5Literate(handle, H5_INDEX_NAME, H5_ITER_INC, nullptr, add_name, &names));
   return names;
 }
@@ -104,9 +149,11 @@ const std::vector<std::uint64_t>& ReadableFile::frame_offsets() {
   const std::uint64_t times = length("frames/time"),
                       beads = has("beads") ? common_length("beads") : 0;
   std::size_t frames = 0;
-  while (frames < times && frames + 1 < offset.size() && offset[frames + 1] <= beads
-         && offset[frames] <= offset[frames + 1])
+  while (frames < times && frames + 1 < offset.size() && offset[frames + 1] <= beads) {
+    if (offset[frames + 1] <= offset[frames])
+      reject(fmt::format("is damaged: frame {} of /frames/offset has no beads", frames));
     ++frames;
+  }
   offset.resize(frames + 1);
   return frame_offsets_.emplace(std::move(offset));
 }

@@ -47,6 +47,8 @@ public:
   std::uint64_t length(const std::string& name) {
     return hdf5::length(data_set(name).handle);
   }
+  /// errors : InputError that names the data set if a value is not a number or infinite
+  void expect_finite(const std::string& name, const std::vector<double>& values) const;
   [[nodiscard]] std::vector<std::string> names_in(const std::string& group) const;
   /// Number of rows that all data sets of a group have. If a run was killed during a commit, some
   /// data sets may have more rows.

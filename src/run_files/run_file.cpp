@@ -1,16 +1,17 @@
 #include "ehdjet/run_files/run_file.hpp"
 
 #include "ehdjet/core/error.hpp"
+#include "ehdjet/core/new_file.hpp"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <system_error>
-#include <unistd.h>
+#include <optional>
 
 #include "checkpoint_slots.hpp"
 #include "file_driver.hpp"
+#include "readable_file.hpp"
 
 namespace ehdjet {
 
@@ -19,63 +20,18 @@ using hdf5::Handle;
 
 namespace {
 
-// The file is created under a temporary name and gets its final name as soon as it can be opened.
-// If something fails before that, an older file of the final name is not changed.
-class TemporaryFile {
-public:
-  explicit TemporaryFile(const fs::path& target)
-      : target_(target)
-      , path_(target.parent_path()
-              / fmt::format(".{}.{}", target.filename().string(),
-                            static_cast<long>(::getpid()))) {
-    const int file =
-        ::open(path_.c_str(), O_CREAT | O_EXCL | O_RDWR | O_CLOEXEC, 0666); // NOLINT
-    if (file < 0)
-      throw InputError(fmt::format("cannot create {}: {}. Choose another name with -o",
-                                   target.string(), std::strerror(errno)));
-    ::close(file);
-  }
-  ~TemporaryFile() {
-    std::error_code ignored;
-    if (!renamed_) fs::remove(path_, ignored);
-  }
-  TemporaryFile(const TemporaryFile&) = delete;
-  TemporaryFile& operator=(const TemporaryFile&) = delete;
+/// A checkpoint says under this prefix how many rows each column has.
+constexpr const char* rows_part = "rows.";
+constexpr const char* in_use = "is being written by another run";
 
-  [[nodiscard]] const fs::path& path() const { return path_; }
-  void rename() {
-    std::error_code error;
-    fs::rename(path_, target_, error);
-    if (error)
-      throw InputError(
-          fmt::format("cannot create {}: {}", target_.string(), error.message()));
-    renamed_ = true;
-  }
-
-private:
-  fs::path target_, path_;
-  bool renamed_ = false;
-};
-
-// The path of the file without links. Throws if the file may not be created there.
-fs::path checked(const fs::path& path, bool overwrite) {
-  std::error_code ignored;
-  if (fs::exists(path, ignored)) {
-    const std::string name = path.string();
-    if (!fs::is_regular_file(path))
-      throw InputError(name + " is not a regular file: choose another name with -o");
-    if (!overwrite)
-      throw InputError(
-          name + " exists: choose another name with -o or overwrite it with --force");
-    if (::access(path.c_str(), W_OK) != 0)
-      throw InputError(fmt::format("cannot overwrite {}: {}", name, std::strerror(errno)));
-    return fs::canonical(path);
-  }
-  fs::path absolute = fs::absolute(path);
-  if (!fs::is_directory(absolute.parent_path(), ignored))
-    throw InputError(fmt::format("cannot create {}: there is no folder {}", path.string(),
-                                 absolute.parent_path().string()));
-  return absolute;
+// HDF5 needs a file in which it can go back.
+NewFile regular_file(const fs::path& path, bool overwrite) {
+  NewFile file(path, overwrite);
+  if (file.is_stream())
+    throw InputError(path.string() + " is not a regular file: choose another name with -o");
+  if (overwrite && hdf5::ReplaceLock(path.c_str()).is_refused())
+    throw InputError(path.string() + ' ' + in_use);
+  return file;
 }
 
 Handle file_creation() {
@@ -83,6 +39,7 @@ Handle file_creation() {
   // The driver manages free space: HDF5 would reuse space that the last flush still needs.
   hdf5::check(H5Pset_file_space_strategy(properties, H5F_FSPACE_STRATEGY_NONE, false, 1));
   hdf5::keep_in_one_record(properties);
+  hdf5::keep_no_times(properties);
   return properties;
 }
 
@@ -136,6 +93,9 @@ Handle group_in(hid_t file, const std::string& name) {
              : hdf5::create_group(file, name.c_str());
 }
 
+// For statistics, ledger, status and message.
+constexpr hsize_t room_for_the_end = 16384;
+
 void write_status(hid_t file, const std::string& status, const std::string& message) {
   hdf5::write_attribute(file, "status", status);
   hdf5::write_attribute(file, "message", message);
@@ -143,8 +103,41 @@ void write_status(hid_t file, const std::string& status, const std::string& mess
 
 } // namespace
 
+/// The file of a stopped run, from which rows are copied, and which nobody else may replace.
+struct RunFile::Source {
+  explicit Source(const StoppedRun& run)
+      : lock(run.file.c_str())
+      , file(run.file)
+      , checkpoint(run.checkpoint) {
+    if (lock.is_refused()) file.reject(in_use);
+  }
+
+  /// Appends the rows that a column had at the checkpoint.
+  void copy(const std::string& name, Column& column) {
+    const auto found = checkpoint.find(rows_part + name);
+    if (found == checkpoint.end() || found->second.size() != 1)
+      file.reject("cannot be resumed: its checkpoint does not say how many rows /" + name
+                  + " had. --continue goes on in another file");
+    const double count = found->second[0];
+    if (!(count >= 0)
+        || count > static_cast<double>(file.guard([&] { return file.length(name); })))
+      file.reject(
+          fmt::format("is damaged: its checkpoint says that /{} has {} rows", name, count));
+    constexpr std::size_t at_once = std::size_t{1} << 17U;
+    const auto rows = static_cast<std::size_t>(count);
+    for (std::size_t first = 0; first < rows; first += at_once)
+      column.append(file.guard(
+          [&] { return file.rows<double>(name, first, std::min(at_once, rows - first)); }));
+  }
+
+  hdf5::ReplaceLock lock;
+  ReadableFile file;
+  Checkpoint checkpoint;
+};
+
 void RunFile::guard(const std::function<void()>& action) {
   const auto check = [&] {
+    failed_ |= broken();
     if (broken())
       throw RunError(fmt::format("cannot write {}: {}. It is readable up to the last flush",
                                  path_.string(),
@@ -156,6 +149,7 @@ void RunFile::guard(const std::function<void()>& action) {
   } catch (const hdf5::Failure& failure) {
     check();
     // The disk has not failed: the message of HDF5 is reported.
+    failed_ = true;
     if (*file_ >= 0) hdf5::FileDriver::of(*file_).abandon(EIO);
     throw RunError(fmt::format("cannot write {}: {}", path_.string(), failure.what()));
   }
@@ -164,15 +158,29 @@ void RunFile::guard(const std::function<void()>& action) {
 
 RunFile::RunFile(const fs::path& path, bool overwrite, const Provenance& provenance,
                  double flush_interval)
-    : path_(checked(path, overwrite))
-    , flush_interval_(flush_interval)
+    : flush_interval_(flush_interval)
+    , unnamed_(std::make_unique<NewFile>(regular_file(path, overwrite)))
     , file_(std::make_unique<Handle>()) {
+  create(provenance);
+  publish();
+}
+
+RunFile::RunFile(const StoppedRun& run, const Provenance& provenance, double flush_interval)
+    : flush_interval_(flush_interval)
+    , unnamed_(std::make_unique<NewFile>(regular_file(run.file, true)))
+    , file_(std::make_unique<Handle>())
+    , source_(std::make_unique<Source>(run)) {
+  create(provenance);
+}
+
+void RunFile::create(const Provenance& provenance) {
   hdf5::silence_errors();
-  TemporaryFile temporary(path_);
+  path_ = unnamed_->target(); // for messages
+  const fs::path& temporary = unnamed_->create();
   guard([&] {
-    *file_ = {
-        H5Fcreate(temporary.path().c_str(), H5F_ACC_TRUNC, file_creation(), file_access()),
-        H5Fclose};
+    *file_ = {H5Fcreate(temporary.c_str(), H5F_ACC_TRUNC, file_creation(), file_access()),
+              H5Fclose};
+    hdf5::FileDriver::of(*file_).keep_room(room_for_the_end);
     hdf5::write_attribute(*file_, "format", std::string("ehdjet run"));
     hdf5::write_attribute(*file_, "format_version", std::uint64_t{1});
     write_status(*file_, "running", "");
@@ -184,7 +192,19 @@ RunFile::RunFile(const fs::path& path, bool overwrite, const Provenance& provena
     hdf5::write_text(scene, "resolved", provenance.scene_resolved);
   });
   flush();
-  temporary.rename();
+}
+
+void RunFile::publish() {
+  unnamed_->publish();
+  path_ = unnamed_->target();
+  unnamed_.reset();
+}
+
+void RunFile::take_place() {
+  EHDJET_EXPECTS(source_ && unnamed_);
+  keep(source_->checkpoint);
+  publish();
+  source_.reset();
 }
 
 RunFile::~RunFile() {
@@ -199,6 +219,8 @@ RunFile::~RunFile() {
 Column& RunFile::add_column(const std::string& group, const ColumnInfo& info,
                             std::size_t chunk_rows) {
   guard([&] { columns_.emplace_back(group_in(*file_, group), info, chunk_rows); });
+  names_.push_back(group + '/' + info.name);
+  if (source_) guard([&] { source_->copy(names_.back(), columns_.back()); });
   return columns_.back();
 }
 
@@ -210,6 +232,7 @@ void RunFile::describe(const std::string& group, const char* attribute,
 void RunFile::write(const std::function<void()>& append) {
   EHDJET_EXPECTS(*file_ >= 0); // not finished yet
   guard(append);
+  ++records_;
   if (std::chrono::steady_clock::now() - flushed_ >= flush_interval_) flush();
 }
 
@@ -219,46 +242,91 @@ void RunFile::flush() {
     hdf5::check(H5Fflush(*file_, H5F_SCOPE_LOCAL));
     hdf5::FileDriver::of(*file_).commit();
   });
+  if (!failed_) flushed_records_ = records_; // later flushes only add the end of the run
   flushed_ = std::chrono::steady_clock::now();
+  follow();
+  if (removed_)
+    throw RunError(path_.string() + " has been removed or replaced during the run");
+}
+
+// Another program may have renamed or removed the file.
+void RunFile::follow() {
+  const fs::path now = hdf5::FileDriver::of(*file_).place(path_);
+  removed_ = now.empty();
+  if (!removed_) path_ = now;
 }
 
 // The slot is committed before it is made current: the current slot is always complete.
 void RunFile::keep(const Checkpoint& checkpoint) {
   std::uint64_t slot = 0;
-  guard([&] { slot = hdf5::fill_free_slot(*file_, checkpoint); });
+  Checkpoint with_rows = checkpoint;
+  for (std::size_t i = 0; i < columns_.size(); ++i)
+    with_rows[rows_part + names_[i]] = {static_cast<double>(columns_[i].rows())};
+  guard([&] { slot = hdf5::fill_free_slot(*file_, with_rows); });
   flush();
   guard([&] { hdf5::make_current(*file_, slot); });
   flush();
+  guard([&] { hdf5::FileDriver::of(*file_).sync(); });
 }
 
 void RunFile::finish(const std::string& status, const std::string& message,
                      const RunStatistics& statistics, const Ledger& ledger,
                      const std::map<std::string, std::string>& notes) {
   EHDJET_EXPECTS(*file_ >= 0); // not finished yet
-  const auto write_end = [&] {
-    write_status(*file_, status, message);
+  const auto rest = [&] {
     for (const auto& [name, value] : notes)
       hdf5::write_attribute(*file_, name.c_str(), value);
     write_statistics(*file_, statistics);
     write_ledger(*file_, ledger);
   };
+  if (removed_) return close();
+  std::optional<RunError> failure;
   if (!broken()) {
-    guard(write_end);
-    flush();
-    close();
-    return;
+    hdf5::FileDriver::of(*file_).keep_room(0);
+    try {
+      return write_end(status, message, rest);
+    } catch (const RunError& error) {
+      failure = error;
+    }
   }
-  // The file goes back to the last flush, which fits on the disk, and gets the status and message.
+  follow();
   close();
-  try {
-    guard([&] {
-      *file_ = {H5Fopen(path_.c_str(), H5F_ACC_RDWR, file_access()), H5Fclose};
-    });
-    guard(write_end);
-    flush();
-  } catch (const RunError&) { // the first failure has already been reported
+  // The file goes back to the last flush, behind which there is room. If another program took it, what there is
+  // may still do for the status.
+  const std::string outcome = failure ? "failed" : status,
+                    reason = failure ? failure->what() : message;
+  for (const std::function<void()>& more :
+       {std::function<void()>(rest), std::function<void()>()}) {
+    if (removed_) break;
+    try {
+      guard([&] {
+        *file_ = {H5Fopen(path_.c_str(), H5F_ACC_RDWR, file_access()), H5Fclose};
+      });
+      write_end(outcome, reason, more);
+      break;
+    } catch (const RunError&) { // the first failure is reported
+      close();
+    }
   }
+  if (failure) throw RunError(*failure);
+}
+
+void RunFile::write_end(const std::string& status, const std::string& message,
+                        const std::function<void()>& rest) {
+  guard([&] {
+    write_status(*file_, status, message);
+    if (rest) rest();
+  });
+  flush();
+  guard([&] { hdf5::FileDriver::of(*file_).sync(); });
   close();
+}
+
+std::string RunFile::contents() const {
+  if (removed_) return "nothing is left of it";
+  if (!failed_) return fmt::format("everything up to then is in {}", path_.string());
+  return fmt::format("{} has {} of {} rows, frames and other records", path_.string(),
+                     flushed_records_, records_);
 }
 
 void RunFile::close() {

@@ -1,14 +1,11 @@
 #include "ehdjet/scene/calibration_file.hpp"
 
 #include "ehdjet/core/error.hpp"
+#include "ehdjet/core/text_file.hpp"
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
 #include <fmt/format.h>
-#include <fstream>
 #include <functional>
-#include <iterator>
 #include <set>
 
 #include "scene_text.hpp"
@@ -49,11 +46,7 @@ std::vector<double> grid(const SceneText& text, const std::string& key) {
 } // namespace
 
 CostModel read_calibration(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in || std::filesystem::is_directory(file))
-    throw InputError(fmt::format("cannot read the calibration {}: {}", file.string(),
-                                 in ? "it is a folder" : std::strerror(errno)));
-  const SceneText text({std::istreambuf_iterator<char>(in), {}}, file.string(), {});
+  const SceneText text(read_text_file(file, "the calibration"), file.string(), {});
   const std::set<std::string, std::less<>> known{"charges", "tolerances", "direct",
                                                  "fmm_jet", "fmm_cloud"};
   for (const auto& entry : text.root()) {

@@ -116,6 +116,12 @@ void check_refinement(const SceneConfig& c, const SceneText& text) {
         fmt::format("refinement.coarsen = {} m: must be at most {} m, half of "
                     "refinement.length, or links would be joined that have just been cut",
                     *r.coarsen, r.length / 2));
+  if (cuts && r.shortest && c.nozzle && *r.shortest * c.nozzle->radius > r.length / 2)
+    refuse("shortest",
+           fmt::format("refinement.shortest = {}: must be at most {:.3g}, "
+                       "refinement.length/(2 nozzle.radius), or links would be joined that "
+                       "have just been cut",
+                       *r.shortest, r.length / (2 * c.nozzle->radius)));
 }
 
 void check_output(const SceneConfig& c, const SceneText& text) {

@@ -1,6 +1,7 @@
 #include "key_description.hpp"
 
 #include "ehdjet/core/error.hpp"
+#include "ehdjet/scene/read_scene.hpp"
 #include "ehdjet/scene/schema.hpp"
 
 #include <fmt/format.h>
@@ -12,13 +13,14 @@ namespace {
 /// Schema visitor: finds one key.
 struct Lookup {
   std::string_view path;
-  std::string prefix, found;
+  std::string prefix, found, unit;
 
   template <class T, class Allowed>
   void required(std::string_view name, T&, const Allowed& allowed,
                 std::string_view meaning) {
-    if (prefix + std::string(name) == path)
-      found = fmt::format("must be {} ({})", allowed_text(allowed), meaning);
+    if (prefix + std::string(name) != path) return;
+    found = fmt::format("must be {} ({})", allowed_text(allowed), meaning);
+    unit = unit_text(allowed);
   }
   template <class T, class Allowed>
   void optional(std::string_view name, T& value, const Allowed& allowed,
@@ -38,12 +40,22 @@ struct Lookup {
   }
 };
 
-} // namespace
-
-std::string key_description(std::string_view path) {
-  Lookup lookup{.path = path, .prefix = {}, .found = {}};
+Lookup look_up(std::string_view path) {
+  Lookup lookup{.path = path, .prefix = {}, .found = {}, .unit = {}};
   SceneConfig any;
   describe(lookup, any);
+  return lookup;
+}
+
+} // namespace
+
+std::string key_unit(std::string_view path) {
+  const std::string unit = look_up(path).unit;
+  return unit == "-" ? "" : unit;
+}
+
+std::string key_description(std::string_view path) {
+  Lookup lookup = look_up(path);
   EHDJET_EXPECTS(!lookup.found.empty());
   return lookup.found;
 }

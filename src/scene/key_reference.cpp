@@ -6,18 +6,6 @@
 namespace ehdjet {
 namespace {
 
-std::string unit_of(const Range& range) {
-  return std::string(range.unit);
-}
-std::string unit_of(const Triple& triple) {
-  return unit_of(triple.each);
-}
-std::string unit_of(const ModeList&) {
-  return "Pa, s";
-}
-std::string unit_of(const auto&) {
-  return "";
-}
 std::string range_of(const Range& range) {
   return Range{"-", range.lowest, range.highest, range.open}
       .text(); // unit has its own column
@@ -84,7 +72,7 @@ struct Reference {
     std::string cells;
     // A bar would end the cell of a Markdown table.
     for (const char c : meaning) cells += c == '|' ? std::string("\\|") : std::string(1, c);
-    text += fmt::format("| `{}` | {} | {} | {} | {} |\n", name, unit_of(allowed),
+    text += fmt::format("| `{}` | {} | {} | {} | {} |\n", name, unit_text(allowed),
                         range_of(allowed), otherwise, cells);
   }
 };

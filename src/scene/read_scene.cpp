@@ -1,6 +1,7 @@
 #include "ehdjet/scene/read_scene.hpp"
 
 #include "ehdjet/core/error.hpp"
+#include "ehdjet/core/text_file.hpp"
 #include "ehdjet/scene/air_profile_file.hpp"
 #include "ehdjet/scene/calibration_file.hpp"
 #include "ehdjet/scene/chain_file.hpp"
@@ -8,11 +9,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
-#include <cstring>
 #include <fmt/format.h>
-#include <fstream>
-#include <iterator>
 #include <optional>
 #include <type_traits>
 
@@ -229,8 +226,7 @@ private:
 } // namespace
 
 Scene read_scene_text(const std::string& text, const std::string& name,
-                      const std::filesystem::path& folder,
-                      const std::vector<std::string>& overrides) {
+                      const std::filesystem::path& folder, const Overrides& overrides) {
   const SceneText source(text, name, overrides);
   refuse_unknown_names(source);
   Scene scene;
@@ -251,13 +247,16 @@ Scene read_scene_text(const std::string& text, const std::string& name,
   return scene;
 }
 
-Scene read_scene(const std::filesystem::path& file,
-                 const std::vector<std::string>& overrides) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in || std::filesystem::is_directory(file))
-    throw InputError(fmt::format("cannot read the scene file {}: {}", file.string(),
-                                 in ? "it is a folder" : std::strerror(errno)));
-  const std::string text{std::istreambuf_iterator<char>(in), {}};
+SceneConfig config_of(const std::string& resolved) {
+  const SceneText source(resolved, "scene/resolved", {});
+  SceneConfig config;
+  Reader reader(source);
+  describe(reader, config);
+  return config;
+}
+
+Scene read_scene(const std::filesystem::path& file, const Overrides& overrides) {
+  const std::string text = read_text_file(file, "the scene file");
   return read_scene_text(text, file.string(), file.parent_path(), overrides);
 }
 

@@ -30,17 +30,9 @@ std::string text_of(Enum value, const Choices<Enum, N>& choices) {
   return toml_text(name_of(value, choices));
 }
 
-std::string unit_of(const Range& range) {
-  return fmt::format("[{}] ", range.unit);
-}
-std::string unit_of(const Triple& triple) {
-  return unit_of(triple.each);
-}
-std::string unit_of(const ModeList&) {
-  return "[Pa, s] ";
-}
-std::string unit_of(const auto&) {
-  return "";
+std::string unit_of(const auto& allowed) {
+  const std::string unit = unit_text(allowed);
+  return unit.empty() ? "" : fmt::format("[{}] ", unit);
 }
 
 /// Schema visitor: writes what the scene has. An absent optional key becomes a comment that says

@@ -4,8 +4,12 @@
 #include "ehdjet/scene/schema.hpp"
 #include "ehdjet/scene/stability.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <iterator>
+#include <optional>
+#include <utility>
 
 #include "physics_report.hpp"
 
@@ -61,12 +65,8 @@ std::string stability_text(const Scene& scene) {
   line("Coulomb", rates.coulomb, limits.coulomb);
   line("bending growth", rates.coulomb_growth, {});
   line("surface tension", rates.surface_tension, limits.surface_tension);
-  const auto& i = scene.config.integrator;
-  if (i.method == "rk4" && i.step && *i.step > limits.least())
-    text += fmt::format(
-        "  WARNING: integrator.step = {} s is longer than the longest stable step "
-        "{:.4g} s: expect the run to blow up\n",
-        *i.step, limits.least());
+  if (const auto warning = step_warning(scene))
+    text += fmt::format("  WARNING: {}\n", *warning);
   return text;
 }
 
@@ -161,6 +161,25 @@ std::string output_text(const SceneConfig& c) {
   return parts.empty() ? "none" : fmt::format("{}", fmt::join(parts, ", "));
 }
 
+/// What is to happen so often that the run would do little else.
+std::vector<std::string> interval_warnings(const SceneConfig& c) {
+  constexpr double many = 1e6;
+  std::vector<std::string> warnings;
+  for (const auto& [key, interval] :
+       {std::pair{"output.observables", c.output.observables},
+        {"output.frames", c.output.frames},
+        {"output.budget", c.output.budget},
+        {"output.resolving_power", c.output.resolving_power},
+        {"output.checkpoints", c.output.checkpoints},
+        {"refinement.interval",
+         c.refinement ? c.refinement->interval : std::optional<double>()}})
+    if (interval && c.run.end_time / *interval > many)
+      warnings.push_back(fmt::format("{} = {} s is {:.1e} times in run.end_time = {} s",
+                                     key, *interval, c.run.end_time / *interval,
+                                     c.run.end_time));
+  return warnings;
+}
+
 std::string jet_text(const Scene& scene) {
   const SceneConfig& c = scene.config;
   if (!c.nozzle)
@@ -246,6 +265,8 @@ std::string run_text(const Scene& scene) {
     text += i.events == EventPlacement::located ? "; events located inside steps"
                                                 : "; events at the ends of steps";
   text += fmt::format("\n  output: {}\n", output_text(c));
+  for (const std::string& warning : interval_warnings(c))
+    text += fmt::format("  WARNING: {}\n", warning);
   return text + times_text(scene);
 }
 
@@ -254,6 +275,13 @@ std::string run_text(const Scene& scene) {
 std::string scene_report(const Scene& scene) {
   return resolved_toml(scene.config) + groups_text(scene.config) + stability_text(scene)
          + physics_text(scene) + run_text(scene) + cost_text(scene);
+}
+
+std::vector<std::string> run_warnings(const Scene& scene) {
+  std::vector<std::string> warnings = near_field_warnings(scene.config);
+  if (auto warning = step_warning(scene)) warnings.push_back(std::move(*warning));
+  std::ranges::move(interval_warnings(scene.config), std::back_inserter(warnings));
+  return warnings;
 }
 
 } // namespace ehdjet

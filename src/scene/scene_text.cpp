@@ -18,6 +18,13 @@ std::pair<std::string_view, std::string_view> split(std::string_view path) {
   return {path.substr(0, dot), path.substr(dot + 1)};
 }
 
+std::string trimmed(const std::string& text) {
+  constexpr const char* blank = " \t";
+  const auto first = text.find_first_not_of(blank);
+  if (first == std::string::npos) return {};
+  return text.substr(first, text.find_last_not_of(blank) + 1 - first);
+}
+
 bool is_bare_word(std::string_view text) {
   return !text.empty() && std::ranges::none_of(text, [](char c) {
     return static_cast<unsigned char>(c) < 0x20
@@ -47,7 +54,7 @@ bool is_short(const toml::array& list) {
 } // namespace
 
 SceneText::SceneText(const std::string& text, const std::string& name,
-                     const std::vector<std::string>& overrides)
+                     const Overrides& overrides)
     : name_(name) {
   try {
     root_ = toml::parse(text, name);
@@ -55,18 +62,19 @@ SceneText::SceneText(const std::string& text, const std::string& name,
     throw InputError(fmt::format("{}:{}:{}: {}", name, e.source().begin.line,
                                  e.source().begin.column, e.description()));
   }
-  for (const auto& assignment : overrides) override_with(assignment);
+  for (const Override& o : overrides) override_with(o);
 }
 
-void SceneText::override_with(const std::string& assignment) {
+void SceneText::override_with(const Override& override) {
+  const std::string& assignment = override.assignment;
   const auto refuse = [&](std::string_view why) {
-    throw InputError(fmt::format("--set {}: {}", assignment, why));
+    throw InputError(fmt::format("{}: {}", override.origin, why));
   };
   const auto equals = assignment.find('=');
-  if (equals == std::string::npos || equals == 0)
+  if (equals == std::string::npos)
     refuse("expected table.key=value, for example nozzle.radius=5e-5");
-  const std::string path = assignment.substr(0, equals);
-  const std::string value = assignment.substr(equals + 1);
+  const std::string path = trimmed(assignment.substr(0, equals));
+  const std::string value = trimmed(assignment.substr(equals + 1));
   const auto [table_name, key] = split(path);
   if (key.empty() || (table_name.empty() && key.size() != path.size()))
     refuse("expected table.key=value, for example nozzle.radius=5e-5");
@@ -85,7 +93,7 @@ void SceneText::override_with(const std::string& assignment) {
   if (!parsed) refuse(fmt::format("`{}` is not a TOML value", value));
   parsed->get("value")->visit(
       [table, name = key](const auto& node) { table->insert_or_assign(name, node); });
-  overridden_[path] = "--set " + assignment;
+  overridden_[path] = override.origin;
 }
 
 const toml::node* SceneText::find(std::string_view path) const {

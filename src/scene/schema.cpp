@@ -63,6 +63,18 @@ std::string allowed_text(YesNo) {
   return "true or false";
 }
 
+std::string unit_text(const Range& range) {
+  return std::string(range.unit);
+}
+
+std::string unit_text(const Triple& triple) {
+  return unit_text(triple.each);
+}
+
+std::string unit_text(const ModeList& modes) {
+  return fmt::format("{}, {}", modes.modulus.unit, modes.relaxation_time.unit);
+}
+
 std::string toml_text(double value) {
   return fmt::format("{}", value);
 }

@@ -2,11 +2,13 @@
 
 #include "ehdjet/core/constants.hpp"
 #include "ehdjet/core/error.hpp"
+#include "ehdjet/integrators/make_integrator.hpp"
 #include "ehdjet/integrators/stability_region.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <fmt/format.h>
 #include <limits>
 #include <numbers>
 
@@ -95,6 +97,22 @@ StabilityLimits step_limits(const ChainRates& rates, const ButcherTableau& metho
 double StabilityLimits::least() const {
   return std::min({viscoelastic.value_or(infinity), damping.value_or(infinity),
                    coulomb.value_or(infinity), surface_tension.value_or(infinity)});
+}
+
+std::optional<std::string> step_warning(const Scene& scene) {
+  const IntegratorConfig& i = scene.config.integrator;
+  if (!i.step || integration_method(i.method).kind != MethodKind::explicit_steps)
+    return std::nullopt;
+  const std::size_t k = stiffest_link(scene);
+  const double limit = step_limits(chain_rates(scene.config, link_state(scene, k)),
+                                   butcher_tableau(i.method))
+                           .least();
+  if (*i.step <= limit) return std::nullopt;
+  return fmt::format(
+      "integrator.step = {} s is longer than {:.4g} s, the longest stable step "
+      "of {} for {}: the jet will be wrong, or the run will blow up",
+      *i.step, limit, i.method,
+      scene.config.nozzle ? "the link that leaves the nozzle" : fmt::format("link {}", k));
 }
 
 LinkState link_state(const Scene& scene, std::size_t k) {

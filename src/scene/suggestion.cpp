@@ -1,28 +1,13 @@
 #include "suggestion.hpp"
 
+#include "ehdjet/core/edit_distance.hpp"
+
 #include <algorithm>
 #include <array>
 #include <fmt/format.h>
-#include <numeric>
 #include <utility>
 
 namespace ehdjet {
-
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1); // distances of a[0..i) to every b[0..j)
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i + 1;
-    for (std::size_t j = 0; j < b.size(); ++j) {
-      const std::size_t replace = diagonal + (a[i] == b[j] ? 0 : 1);
-      diagonal = row[j + 1];
-      row[j + 1] = std::min({replace, row[j] + 1, row[j + 1] + 1});
-    }
-  }
-  return row.back();
-}
-
 namespace {
 
 /// Keys that have another name now.

@@ -6,9 +6,6 @@
 
 namespace ehdjet {
 
-/// Levenshtein distance: insertions, deletions and replacements of single characters.
-[[nodiscard]] std::size_t edit_distance(std::string_view a, std::string_view b);
-
 /// " (did you mean b?)" with the nearest of `known`, or nothing if none is near. Paths
 /// "table.key" that differ in the table alone are taken as near: the key is in the wrong table.
 [[nodiscard]] std::string suggestion(std::string_view wrong,

@@ -45,6 +45,7 @@ ArraySimulation::ArraySimulation(std::vector<Member> members,
 
 void ArraySimulation::add(std::shared_ptr<ArrayObserver> observer) {
   observer->skip_to(restored_at_);
+  if (!restored_.empty()) observer->archive(Archive::from(restored_).part(observers_part));
   observers_.push_back(std::move(observer));
 }
 
@@ -87,14 +88,14 @@ void ArraySimulation::run_until(double end_time) {
   const WallClock clock;
   const double wall_before = statistics_.wall_time;
   bool cut = false; // by the end: a run with a later end goes another way from here on
-  while (time_ < end_time) {
+  while (!(time_ >= end_time)) {
     const double to_end = end_time - time_;
     const double wanted = choose_step();
     const bool last = wanted >= nearly * to_end;
     cut |= last;
     advance(attempt_step(last ? to_end : wanted), end_time);
     statistics_.wall_time = wall_before + clock.seconds();
-    if (time_ >= checkpoint_due_ && !cut) make_checkpoint();
+    if (!cut && checkpoint_is_due()) make_checkpoint();
     for (const StepHook& hook : hooks_) hook(*this);
   }
   show_now(end_time);
@@ -118,7 +119,7 @@ double ArraySimulation::attempt_step(double h) {
     count_cost();
     control_.set_error_order(integrator_->error_order());
     if (limits_.fixed) {
-      if (std::isnan(outcome.error)) fail(h, "the state is not a number after");
+      if (!std::isfinite(outcome.error)) fail(h, "the state is not a number after");
       if (any_link_vanishes()) fail_at_link(h);
       break;
     }
@@ -131,11 +132,12 @@ double ArraySimulation::attempt_step(double h) {
     ++statistics_.rejected;
     const double next = exact ? h / 4 : control_.after_rejected(h, outcome.error);
     const double round_off = 4 * std::numeric_limits<double>::epsilon() * time_;
-    if (next < std::max(limits_.shortest, round_off)) {
+    if (!(next >= limits_.shortest && next >= round_off)) {
       if (vanishes) fail_at_link(h);
       fail(h, "the step size collapsed at");
     }
     h = next;
+    if (between_attempts_) between_attempts_();
   }
   count_step(statistics_, h);
   note_method(statistics_, integrator_->method_in_use(), time_);
@@ -306,9 +308,9 @@ void ArraySimulation::show_until(double h, double end) {
 
 void ArraySimulation::show_now(double end_time) {
   for (const auto& o : observers_)
-    while (o->next_time() <= end_time) {
+    while (const auto t = output_time(o->next_time(), end_time)) {
       seen_ = jets_, seen_ledgers_ = ledgers_;
-      show(*o, o->next_time());
+      show(*o, *t);
     }
 }
 
@@ -318,11 +320,21 @@ void ArraySimulation::make_checkpoints(double interval) {
   checkpoint_due_ = next_multiple(checkpoint_interval_, time_);
 }
 
+void ArraySimulation::make_checkpoints_when(std::function<bool()> wanted) {
+  checkpoint_wanted_ = std::move(wanted);
+}
+
+bool ArraySimulation::checkpoint_is_due() const {
+  return time_ >= checkpoint_due_ || (checkpoint_wanted_ && checkpoint_wanted_());
+}
+
 void ArraySimulation::make_checkpoint() {
-  integrator_->restart(); // who goes on from here has no derivatives of the stages either
   Checkpoint checkpoint;
   archive(Archive::into(checkpoint));
-  checkpoint_due_ = next_multiple(checkpoint_interval_, time_);
+  for (const auto& o : observers_)
+    o->archive(Archive::into(checkpoint).part(observers_part));
+  if (checkpoint_interval_ > 0)
+    checkpoint_due_ = next_multiple(checkpoint_interval_, time_);
   at_time(time_, [&] {
     for (const auto& o : observers_) o->checkpoint(checkpoint);
   });
@@ -330,16 +342,38 @@ void ArraySimulation::make_checkpoint() {
 
 void ArraySimulation::restore(const Checkpoint& checkpoint) {
   const std::size_t events = restart_step_.size();
-  archive(Archive::from(checkpoint));
-  if (restart_step_.size() != events || (after_event_ && *after_event_ >= events))
-    throw InputError("the checkpoint is of another scene");
+  const Archive a = Archive::from(checkpoint);
+  archive(a);
+  a.require("step", step_ >= 0, "is negative");
+  a.require("restart_step", restart_step_.size() == events, "is of another scene");
+  a.require("restart_step", none_negative(restart_step_), "is negative");
+  a.require("after_event", !after_event_ || *after_event_ < events, "is of another scene");
+  for (std::size_t j = 0; j < jets(); ++j) {
+    const Ledger& ledger = ledgers_[j];
+    const JetDynamics& dynamics = dynamics_->jet(j);
+    const Constraints& c = dynamics.constraints();
+    const auto of = [j](const char* name) { return fmt::format("jet{}.{}", j, name); };
+    a.require(of("state.time"), jets_[j].time == time_, "differs from time");
+    a.require(of("state.has_embryo"),
+              (c.inflow != nullptr && !dynamics.feeds()) || !jets_[j].has_embryo,
+              "is of another scene");
+    a.require(of("state.fed_since"), dynamics.feeds() || jets_[j].fed_since == 0,
+              "is of another scene");
+    a.require(of("ledger.inserted_beads"),
+              statistics_.refinements
+                  || ledger.inserted_beads - ledger.removed_beads == jets_[j].links(),
+              "does not agree with the length of the chain");
+  }
   if (statistics_.method) statistics_.method->in_use = integrator_->method_in_use();
   restored_at_ = time_;
-  for (const auto& o : observers_) o->skip_to(restored_at_);
+  restored_ = part_of(checkpoint, observers_part);
+  for (const auto& o : observers_) {
+    o->skip_to(restored_at_);
+    o->archive(Archive::from(restored_).part(observers_part));
+  }
   if (checkpoint_interval_ > 0)
     checkpoint_due_ = next_multiple(checkpoint_interval_, time_);
   gather_state();
-  integrator_->restart();
 }
 
 // All that the loop looks at before it writes to it, and nothing of the scene.

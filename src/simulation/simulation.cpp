@@ -113,10 +113,16 @@ void Simulation::add(std::unique_ptr<Event> event) {
 
 void Simulation::add(std::shared_ptr<Observer> observer) {
   observer->skip_to(restored_at_);
+  if (!restored_.empty()) observer->archive(Archive::from(restored_).part(observers_part));
   const Interest interest = observer->interest();
   if (interest.steps_and_events) step_observers_.push_back(observer.get());
   if (interest.ends_of_steps) step_end_observers_.push_back(observer.get());
   observers_.push_back(std::move(observer));
+}
+
+void Simulation::between_attempts(const std::function<void()>& hook) {
+  between_attempts_ = hook;
+  if (two_rate_) two_rate_->between_attempts(hook);
 }
 
 void Simulation::after_each_step(StepHook hook) {
@@ -168,25 +174,48 @@ void Simulation::advance(const DenseStep& step, double end_time) {
   apply_events(found ? found->index : events_.size());
 }
 
-void Simulation::run_until(double end_time) {
-  const WallClock clock;
-  const double wall_before = statistics_.wall_time;
+/// Steps up to one end.
+struct Simulation::Stretch {
+  double end_time, wall_before;
   bool cut = false; // by the end: a run with a later end goes another way from here on
-  while (jet_.time < end_time) {
-    const double to_end = end_time - jet_.time;
-    const double wanted = choose_step(end_time);
-    const bool last = wanted >= nearly * to_end;
-    cut |= last;
-    // How short the last step of a short run is says nothing about the next run.
-    uncut_ = last && limits_.even_at_end ? wanted : 0;
-    advance(attempt_step(last ? to_end : wanted), end_time);
-    statistics_.wall_time = wall_before + clock.seconds();
-    if (jet_.time >= checkpoint_due_ && !cut) make_checkpoint();
-    for (Observer* o : step_end_observers_) o->after_step(now());
-  }
+  WallClock clock = {};
+};
+
+void Simulation::run_until(double end_time) {
+  Stretch stretch{.end_time = end_time, .wall_before = statistics_.wall_time};
+  while (!(jet_.time >= end_time)) take_step(stretch);
+  show_rest(end_time);
+}
+
+bool Simulation::step(double end_time) {
+  if (jet_.time >= end_time) return false;
+  Stretch stretch{.end_time = end_time, .wall_before = statistics_.wall_time};
+  take_step(stretch);
+  if (jet_.time >= end_time) show_rest(end_time);
+  return true;
+}
+
+void Simulation::take_step(Stretch& stretch) {
+  const double end_time = stretch.end_time, to_end = end_time - jet_.time;
+  const double wanted = choose_step(end_time);
+  const bool last = wanted >= nearly * to_end;
+  stretch.cut |= last;
+  // How short the last step of a short run is says nothing about the next run.
+  uncut_ = last && limits_.even_at_end ? wanted : 0;
+  advance(attempt_step(last ? to_end : wanted), end_time);
+  statistics_.wall_time = stretch.wall_before + stretch.clock.seconds();
+  if (!stretch.cut && checkpoint_is_due()) make_checkpoint();
+  for (Observer* o : step_end_observers_) o->after_step(now());
+}
+
+void Simulation::show_rest(double end_time) {
   for (const auto& o : observers_)
-    while (o->next_time() <= end_time)
-      show(*o, {o->next_time(), now().columns, jet_, ledger_, statistics_});
+    while (const auto t = output_time(o->next_time(), end_time))
+      show(*o, {*t, now().columns, jet_, ledger_, statistics_});
+}
+
+JetState Simulation::hand_out_jet() {
+  return std::exchange(jet_, JetState(jet_));
 }
 
 void Simulation::make_checkpoints(double interval) {
@@ -195,30 +224,51 @@ void Simulation::make_checkpoints(double interval) {
   checkpoint_due_ = next_multiple(checkpoint_interval_, jet_.time);
 }
 
+void Simulation::make_checkpoints_when(std::function<bool()> wanted) {
+  checkpoint_wanted_ = std::move(wanted);
+}
+
+bool Simulation::checkpoint_is_due() const {
+  return jet_.time >= checkpoint_due_ || (checkpoint_wanted_ && checkpoint_wanted_());
+}
+
 void Simulation::make_checkpoint() {
-  integrator_->restart(); // who goes on from here has no derivatives of the stages either
-  if (two_rate_) two_rate_->forget();
   Checkpoint checkpoint;
   archive(Archive::into(checkpoint));
-  checkpoint_due_ = next_multiple(checkpoint_interval_, jet_.time);
+  for (const auto& o : observers_)
+    o->archive(Archive::into(checkpoint).part(observers_part));
+  if (checkpoint_interval_ > 0)
+    checkpoint_due_ = next_multiple(checkpoint_interval_, jet_.time);
   at_time(jet_.time, [&] {
     for (const auto& o : observers_) o->checkpoint(checkpoint);
   });
 }
 
 void Simulation::restore(const Checkpoint& checkpoint) {
-  const std::size_t events = events_.size();
-  archive(Archive::from(checkpoint));
-  if (restart_step_.size() != events || (after_event_ && *after_event_ >= events))
-    throw InputError("the checkpoint is of another scene");
+  const Archive a = Archive::from(checkpoint);
+  archive(a);
+  const Constraints& c = dynamics_->constraints();
+  const bool may_have_embryo = c.inflow != nullptr && !dynamics_->feeds();
+  a.require("time", time_ == jet_.time, "differs from jet.time");
+  a.require("jet.has_embryo", may_have_embryo || !jet_.has_embryo, "is of another scene");
+  a.require("jet.fed_since", dynamics_->feeds() || jet_.fed_since == 0,
+            "is of another scene");
+  a.require("jet.mat.charge", c.insulating_collector || !jet_.mat, "is of another scene");
+  a.require("ledger.inserted_beads",
+            statistics_.refinements
+                || ledger_.inserted_beads - ledger_.removed_beads == jet_.links(),
+            "does not agree with the length of the chain");
   if (statistics_.method)
     statistics_.method->in_use = two_rates_ ? two_rates : integrator_->method_in_use();
   restored_at_ = jet_.time;
-  for (const auto& o : observers_) o->skip_to(restored_at_);
+  restored_ = part_of(checkpoint, observers_part);
+  for (const auto& o : observers_) {
+    o->skip_to(restored_at_);
+    o->archive(Archive::from(restored_).part(observers_part));
+  }
   if (checkpoint_interval_ > 0)
     checkpoint_due_ = next_multiple(checkpoint_interval_, jet_.time);
   dynamics_->bind(jet_);
-  integrator_->restart();
 }
 
 // All that the loop looks at before it writes to it, and nothing of the scene.
@@ -232,7 +282,7 @@ void Simulation::archive(const Archive& a) {
   for (const auto& e : events_) e->archive(a.part(e->name()));
   if (!two_rate_) return;
   a("two_rates", two_rates_);
-  two_rate_->archive(a.part("two_rate"));
+  two_rate_->archive(a.part("two_rate"), jet_);
 }
 
 void Simulation::archive_pace(const Archive& a) {
@@ -240,6 +290,11 @@ void Simulation::archive_pace(const Archive& a) {
   a("restart_step", restart_step_), a("after_event", after_event_);
   control_.archive(a.part("step_size_control"));
   integrator_->archive(a.part("integrator"));
+  const std::size_t events = events_.size();
+  a.require("step", step_ >= 0, "is negative");
+  a.require("restart_step", restart_step_.size() == events, "is of another scene");
+  a.require("restart_step", none_negative(restart_step_), "is negative");
+  a.require("after_event", !after_event_ || *after_event_ < events, "is of another scene");
 }
 
 // The first step of the other kind is about as long as a step that is known to suit.
@@ -319,7 +374,7 @@ double Simulation::attempt_step(double h) {
     }
     control_.set_error_order(stepping().error_order());
     if (limits_.fixed) {
-      if (std::isnan(outcome.error)) fail(h, "the state is not a number after");
+      if (!std::isfinite(outcome.error)) fail(h, "the state is not a number after");
       if (const auto bead = vanishing_link()) fail_at_link(h, *bead);
       break;
     }
@@ -333,13 +388,14 @@ double Simulation::attempt_step(double h) {
     ++statistics_.rejected;
     uncut_ = 0;
     const double next = exact ? h / 4 : control_.after_rejected(h, outcome.error);
-    // A step that no longer changes t is as good as none.
+    // A step that no longer changes t is as good as none, and NaN is no step.
     const double round_off = 4 * std::numeric_limits<double>::epsilon() * jet_.time;
-    if (next < std::max(limits_.shortest, round_off)) {
+    if (!(next >= limits_.shortest && next >= round_off)) {
       if (vanishing) fail_at_link(h, *vanishing);
       fail(h, "the step size collapsed at");
     }
     h = next;
+    if (between_attempts_) between_attempts_();
   }
   count_step(statistics_, h);
   note_method(statistics_, two_rates_ ? two_rates : integrator_->method_in_use(),

@@ -23,6 +23,21 @@ double next_multiple(double interval, double t) {
   return count * interval;
 }
 
+std::optional<double> output_time(double time, double end) {
+  constexpr double round_off = 1e-12;
+  if (time > end * (1 + round_off)) return std::nullopt;
+  return std::min(time, end);
+}
+
+Checkpoint part_of(const Checkpoint& checkpoint, std::string_view name) {
+  const std::string prefix = std::string(name) + '.';
+  Checkpoint part;
+  for (auto i = checkpoint.lower_bound(prefix);
+       i != checkpoint.end() && i->first.starts_with(prefix); ++i)
+    part.insert(*i);
+  return part;
+}
+
 Ledger ledger_at_start(const JetState& jet) {
   Ledger ledger;
   for (std::size_t k = 1; k < jet.beads(); ++k) {

@@ -49,6 +49,15 @@ void at_time(double t, const Write& write) {
 /// on from a checkpoint.
 double next_multiple(double interval, double t);
 
+/// When a run to `end` shows what is due at `time`, a multiple of an interval: at the end, if it lies beyond
+/// only by round-off, as 3*1e-5 lies beyond 3e-5; never, if it is later [s].
+std::optional<double> output_time(double time, double end);
+
+/// What a checkpoint says about observers stands in this part of it.
+inline constexpr std::string_view observers_part = "observers";
+/// One part of a checkpoint.
+Checkpoint part_of(const Checkpoint& checkpoint, std::string_view name);
+
 /// The beads of the start count as inserted.
 Ledger ledger_at_start(const JetState& jet);
 

@@ -15,7 +15,9 @@ namespace ehdjet {
 namespace {
 
 /// Beads behind the inner ones that are integrated with them, but only for their sake.
-constexpr std::size_t buffer_beads = 2;
+constexpr std::size_t buffer_beads = 2, fewest_inner_beads = 4;
+/// Macro steps after which their number is judged.
+constexpr std::size_t window = 16;
 /// How many beads behind those act on the inner beads with their charges at every stage. The others are
 /// extrapolated, which no error estimate sees: the tighter the tolerance, the farther they have to be.
 std::size_t near_beads(std::size_t inner_beads, double rtol) {
@@ -154,7 +156,7 @@ TwoRate::TwoRate(Parts parts, const Options& options)
     : parts_(std::move(parts))
     , options_(options)
     , inner_beads_(options.inner_beads) {
-  EHDJET_EXPECTS(options.inner_beads >= 4);
+  EHDJET_EXPECTS(options.inner_beads >= fewest_inner_beads);
   parts_.inner->add(parts_.record);
   parts_.inner->after_each_step([this](const Simulation&) {
     learn_distant_field();
@@ -172,6 +174,10 @@ bool TwoRate::suits(const JetState& jet, bool in_use) const {
   return jet.landed.empty()
          || jet.landed.front().bead >= std::min(
                 n, inner_beads_ + buffer_beads + near_beads(inner_beads_, options_.rtol));
+}
+
+void TwoRate::between_attempts(const std::function<void()>& hook) {
+  parts_.inner->between_attempts(hook);
 }
 
 StepOutcome TwoRate::attempt(const JetState& jet, const Ledger& ledger, double h) {
@@ -482,7 +488,7 @@ void TwoRate::forget_distant(const JetState& next, std::size_t births) {
 
 /// m is right if beads far behind it limit the macro step. Returns whether it has changed.
 bool TwoRate::adapt(std::size_t worst, std::size_t births) {
-  constexpr std::size_t window = 16, close = 3;
+  constexpr std::size_t close = 3;
   if (mismatch_limits_ || worst < inner_beads_ + close) ++near_cut_;
   if (++steps_in_window_ < window && births + close < inner_beads_) return false;
   const bool too_few = 2 * near_cut_ > window || births + close >= inner_beads_;
@@ -519,7 +525,7 @@ void TwoRate::count(RunStatistics& statistics) const {
   record.full_sums = static_cast<double>(statistics.evaluations) + full_sums_;
 }
 
-void TwoRate::archive(const Archive& a) {
+void TwoRate::archive(const Archive& a, const JetState& jet) {
   a("inner_beads", inner_beads_), a("near_cut", near_cut_);
   a("steps_in_window", steps_in_window_), a("macro_steps", macro_steps_);
   a("inner_evaluations", inner_evaluations_), a("full_sums", full_sums_),
@@ -529,7 +535,19 @@ void TwoRate::archive(const Archive& a) {
   downstream_before_ = downstream - parts_.downstream->evaluations();
   parts_.inner->archive_pace(a.part("inner"));
   parts_.integrator->archive(a.part("integrator"));
-  ready_ = inner_ready_ = false;
+  a.require("inner_beads", inner_beads_ >= fewest_inner_beads, "is too few");
+  a.require("steps_in_window", steps_in_window_ <= window, "is too many");
+  a.require("near_cut", near_cut_ <= steps_in_window_, "is more than steps_in_window");
+  // Between two steps the inner chain is not prepared; it starts from the whole chain.
+  if (a.is_reading()) inner_ready_ = false;
+  a("ready", ready_);
+  std::vector<double> unknown;
+  a("alone", ready_ ? alone_ : unknown), a("rate", ready_ ? rate_ : unknown);
+  a("jerk", ready_ ? jerk_ : unknown);
+  for (const std::vector<double>* v : {&alone_, &rate_, &jerk_})
+    a.require("ready", !ready_ || v->size() == jet.y.size(), "has rates of another chain");
+  if (!ready_) parts_.field->clear();
+  parts_.field->archive_past(a.part("distant_field"), inner_beads_ + buffer_beads);
 }
 
 } // namespace ehdjet

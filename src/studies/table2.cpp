@@ -17,13 +17,13 @@ struct Mean {
   [[nodiscard]] double value() const { return sum / weights; }
 };
 
-class BeadsBefore final : public Observer {
+class LinksBefore final : public Observer {
 public:
-  BeadsBefore(double from, Mean& mean)
+  LinksBefore(double from, Mean& mean)
       : from_(from)
       , mean_(mean) {}
   void refined(const RefinementRecord& record) override {
-    if (record.time >= from_) mean_.add(static_cast<double>(record.beads_before), 1);
+    if (record.time >= from_) mean_.add(static_cast<double>(record.beads_before - 1), 1);
   }
 
 private:
@@ -31,10 +31,10 @@ private:
   Mean& mean_;
 };
 
-/// Beads in the middle of equal intervals: macro steps are long, and beads are born and land inside.
-class BeadsInside final : public Observer {
+/// Links in the middle of equal intervals: macro steps are long, and beads are born and land inside.
+class LinksInside final : public Observer {
 public:
-  BeadsInside(double from, Mean& all, Mean& stationary)
+  LinksInside(double from, Mean& all, Mean& stationary)
       : from_(from)
       , all_(all)
       , stationary_(stationary) {}
@@ -62,27 +62,27 @@ Table2Run run_table2(Scene scene, double end_time, double stationary_from,
   if (scene.config.refinement) scene.config.output.refinements = RefinementRecords::sums;
   const auto simulation = build_simulation(scene);
   Mean all, stationary, before;
-  simulation->add(std::make_shared<BeadsBefore>(stationary_from, before));
+  simulation->add(std::make_shared<LinksBefore>(stationary_from, before));
   if (prepare) prepare(*simulation);
 
   double time = 0; // at the end of the last step
-  auto beads = static_cast<double>(simulation->jet().links());
+  auto links = static_cast<double>(simulation->jet().links());
   const bool inside = simulation->statistics().two_rates.has_value();
   if (inside)
-    simulation->add(std::make_shared<BeadsInside>(stationary_from, all, stationary));
+    simulation->add(std::make_shared<LinksInside>(stationary_from, all, stationary));
   simulation->after_each_step([&](const Simulation& s) {
     const double now = s.jet().time;
     if (!inside) {
-      all.add(beads, now - time);
-      stationary.add(beads, now - std::max(time, stationary_from));
+      all.add(links, now - time);
+      stationary.add(links, now - std::max(time, stationary_from));
     }
-    time = now, beads = static_cast<double>(s.jet().links());
+    time = now, links = static_cast<double>(s.jet().links());
     if (after_step) after_step(s);
   });
   simulation->run_until(end_time);
-  return {.mean_beads = all.value(),
-          .stationary_beads = stationary.value(),
-          .beads_before = before.value(),
+  return {.mean_links = all.value(),
+          .stationary_links = stationary.value(),
+          .links_before = before.value(),
           .statistics = simulation->statistics()};
 }
 

@@ -21,7 +21,7 @@ TEST(BenchTable2, writes_its_rows_next_to_the_paper_s) {
   EXPECT_EQ(o.exit_code, 0) << o.err;
   EXPECT_THAT(o.out, AllOf(HasSubstr("8787"), HasSubstr("12718"), HasSubstr("t.csv")));
   const std::string csv = text_of(folder / "t.csv");
-  EXPECT_THAT(csv, AllOf(HasSubstr("refinement_length_cm,rates,simulated_s,beads_mean"),
+  EXPECT_THAT(csv, AllOf(HasSubstr("refinement_length_cm,rates,simulated_s,links_mean"),
                          HasSubstr("\n0.8,1,0.003,"), HasSubstr("\n0.8,2,0.003,"),
                          HasSubstr(",150,24,8787,0.26\n")));
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 5);
@@ -36,7 +36,7 @@ TEST(BenchTable2, goes_to_finer_meshes_than_the_paper_and_states_the_growth) {
   EXPECT_EQ(o.exit_code, 0) << o.err;
   EXPECT_THAT(text_of(folder / "t.csv"),
               AllOf(HasSubstr("\n0.2,2,"), HasSubstr("\n0.1,2,"), HasSubstr(",,,\n")));
-  EXPECT_THAT(o.out, HasSubstr("grows with the beads to the power"));
+  EXPECT_THAT(o.out, HasSubstr("grows with the links to the power"));
   EXPECT_EQ(command(folder, table2 + "--rates three").exit_code, 2);
   EXPECT_EQ(command(folder, table2 + "--method auto").exit_code, 2);
   EXPECT_EQ(command(folder, table2 + "--set 'integrator.method=\"two-rate\"'").exit_code,

@@ -82,4 +82,13 @@ TEST(Extreme, a_chain_goes_on_from_a_frame_bit_for_bit) {
   EXPECT_NE(second.out, command(folder, "export first.h5 --beads").out);
 }
 
+// Of a thick thread the parts of a link that is cut are shorter than so many radii: they would be joined at once.
+TEST(Refinement, of_links_that_are_joined_and_cut_again_ends) {
+  const Folder folder;
+  const std::string run =
+      "run chain --quiet -o chain.h5 --set run.end_time=1e-4 --set refinement.length=5e-4 "
+      "--set 'refinement.mesh=\"cut\"' --set refinement.shortest=20";
+  EXPECT_EQ(command(folder, run, "timeout -s KILL 60").exit_code, 0);
+}
+
 } // namespace

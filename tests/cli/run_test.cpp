@@ -152,6 +152,32 @@ TEST(Run, gives_the_same_bits_for_the_same_threads) {
   EXPECT_EQ(first, rows("b.h5"));
 }
 
+TEST(Run, tells_how_many_threads_ran) {
+  const Folder folder;
+  const Outcome two = command(folder, "run " + brief + " --threads 2 -o two.h5");
+  EXPECT_THAT(two.out, HasSubstr(" s on 2 threads"));
+  EXPECT_THAT(two.err, Not(HasSubstr("OMP_THREAD_LIMIT")));
+  const Outcome limited =
+      command(folder, "run " + brief + " --threads 2 -o one.h5", "OMP_THREAD_LIMIT=1");
+  EXPECT_THAT(limited.out, HasSubstr(" s on 1 thread\n"));
+  EXPECT_THAT(limited.err, HasSubstr("1 thread runs instead of 2"));
+  EXPECT_THAT(command(folder, "--version", "OMP_NUM_THREADS=8 OMP_THREAD_LIMIT=1").out,
+              HasSubstr("threads    1\n"));
+}
+
+TEST(Run, warns_of_a_coincident_pair_once) {
+  const Folder folder;
+  folder.file("pair.toml",
+              "[run]\nend_time = 1e-5\n[chain]\nfile = \"beads.csv\"\nfixed = \"none\"\n"
+              "[coulomb]\n[output]\nobservables = 1e-6\n");
+  folder.file("beads.csv", "x_m,y_m,z_m,mass_kg,charge_c,volume_m3\n"
+                           "0,0,0,1e-9,1e-11,1e-12\n2e-4,0,0,1e-9,1e-11,1e-12\n"
+                           "0,0,0,1e-9,1e-11,1e-12\n");
+  const Outcome o = command(folder, "run pair.toml");
+  EXPECT_EQ(o.exit_code, 0) << o.err;
+  EXPECT_THAT(o.out, HasSubstr("1 pair of beads at zero distance"));
+}
+
 TEST(Run, writes_only_what_the_scene_asks_for) {
   const Folder folder;
   folder.file("bare.toml",

@@ -74,5 +74,31 @@ TEST(ForParts, every_entry_is_met_once) {
   }
 }
 
+TEST(ThreadCount, lets_so_many_threads_run_whatever_the_load_and_then_restores) {
+  const int threads = omp_get_max_threads(), dynamic = omp_get_dynamic();
+  for (const bool by_load : {false, true}) {
+    omp_set_dynamic(by_load ? 1 : 0);
+    {
+      const ThreadCount count(5); // more than there may be processors
+      int team = 0;
+#pragma omp parallel
+#pragma omp single
+      team = omp_get_num_threads();
+      EXPECT_EQ(team, 5);
+      EXPECT_EQ(omp_get_max_threads(), 5);
+    }
+    EXPECT_EQ(omp_get_dynamic() != 0, by_load);
+    EXPECT_EQ(omp_get_max_threads(), threads);
+  }
+  omp_set_dynamic(dynamic);
+}
+
+TEST(ThreadCount, is_one_inside_a_parallel_region) {
+  std::array<std::size_t, 2> granted{};
+#pragma omp parallel num_threads(2)
+  granted.at(static_cast<std::size_t>(omp_get_thread_num())) = granted_threads(4);
+  EXPECT_EQ(granted, (std::array<std::size_t, 2>{1, 1}));
+}
+
 } // namespace
 } // namespace ehdjet

@@ -30,6 +30,9 @@ TEST(SampledError, a_known_error_is_found_in_both_norms) {
   EXPECT_EQ(sample.targets, 100U);
   EXPECT_NEAR(sample.relative_l2, 1e-3, 1e-12); // round-off, of sums that cancel a little
   EXPECT_NEAR(sample.worst_per_target, wrong.norm() / pair_sum, 1e-12);
+  const double net = (force[17] - wrong).norm();
+  EXPECT_NEAR(sample.worst_of_net, wrong.norm() / net, 1e-12 * wrong.norm() / net);
+  EXPECT_LT(sample.median_of_net, 1e-12); // all others are right
 }
 
 TEST(SampledError, targets_are_spread_evenly_over_the_chain) {

@@ -87,8 +87,45 @@ Chain with_outliers(Chain c, std::size_t number, double far) {
     c.set(c.size() * (2 * k + 1) / (2 * number), random.around(far));
   return c;
 }
-Chain twins(Chain c) {
-  for (std::size_t i = 1; i < c.size(); i += 2) c.set(i, c.r()[i - 1]);
+/// At every distance from 1 outwards, each `factor` times as far as the one before.
+Chain with_outliers_everywhere(Chain c, double factor) {
+  constexpr std::size_t number = 30;
+  Random random;
+  double far = 1;
+  for (std::size_t k = 0; k < number; ++k, far *= factor)
+    c.set(c.size() * (2 * k + 1) / (2 * number), random.around(far));
+  return c;
+}
+Chain twins(Chain c, double distance = 0) {
+  Random random;
+  for (std::size_t i = 1; i < c.size(); i += 2)
+    c.set(i, c.r()[i - 1] + random.around(distance));
+  return c;
+}
+Chain with_a_knot(Chain c, std::size_t beads, double size) {
+  Random random;
+  const std::size_t begin = c.size() / 8;
+  const Vec3 place = c.r()[begin];
+  for (std::size_t i = begin; i < begin + beads; ++i) c.set(i, place + random.around(size));
+  return c;
+}
+/// A quarter of the charges in one place between the turns.
+Chain beside_a_place(Chain c) {
+  for (std::size_t i = 0; i < c.size() / 4; ++i) c.set(i, {0.5, 0.5, 0.5});
+  return c;
+}
+Chain folded(std::size_t n, double distance) { // there and back again
+  Chain c = straight_chain(n);
+  for (std::size_t i = n / 2; i < n; ++i)
+    c.set(i, static_cast<double>(n - 1 - i) * along + distance * across);
+  return c;
+}
+Chain places_in_turn(std::size_t n, std::size_t places, double size) {
+  Random random;
+  std::vector<Vec3> place;
+  for (std::size_t k = 0; k < places; ++k) place.push_back(random.in_cube());
+  Chain c(n);
+  for (std::size_t i = 0; i < n; ++i) c.set(i, place[i % places] + random.around(size));
   return c;
 }
 Chain shuffled(const Chain& c) {
@@ -98,6 +135,20 @@ Chain shuffled(const Chain& c) {
   Chain s;
   for (const std::size_t i : order) s.add(c.r()[i], c.q[i]);
   return s;
+}
+/// With a density of 1/r^3 over so many decades.
+Chain with_a_dense_centre(std::size_t n, double decades) {
+  Random random;
+  Chain c(n);
+  for (std::size_t i = 0; i < n; ++i)
+    c.set(i, random.around(1).normalized() * std::pow(10, -decades * random()));
+  return c;
+}
+Chain normal_cloud(std::size_t n) {
+  Random random;
+  Chain c(n);
+  for (std::size_t i = 0; i < n; ++i) c.set(i, random.around(1));
+  return c;
 }
 /// Side by side, each of them in order.
 Chain jets(std::size_t n) {
@@ -135,8 +186,23 @@ const std::vector<std::pair<const char*, std::function<Chain(std::size_t)>>>& ge
       {"gas with an outlier", [](N n) { return with_outliers(gas(n), 1, 100); }},
       {"gas with outliers", [](N n) { return with_outliers(gas(n), 10, 1e9); }},
       {"coil with outliers", [](N n) { return with_outliers(coil(n), 10, 1e3); }},
+      {"coil with an outlier at the end of the world",
+       [](N n) { return with_outliers(coil(n), 1, 1e20); }},
+      {"gas with outliers everywhere",
+       [](N n) { return with_outliers_everywhere(gas(n), 10); }},
+      {"coil with outliers everywhere",
+       [](N n) { return with_outliers_everywhere(coil(n), 2); }},
+      {"coil beside a place", [](N n) { return beside_a_place(coil(n)); }},
+      {"knot", [](N n) { return with_a_knot(straight_chain(n), 8, 1e-3); }},
+      {"folded", [](N n) { return folded(n, 1e-4); }},
+      {"places in turn", [](N n) { return places_in_turn(n, 40, 1e-6); }},
+      {"twins that do not coincide", [](N n) { return twins(coil(n), 1e-9); }},
       {"twins", [](N n) { return twins(straight_chain(n)); }},
       {"twins in no order", [](N n) { return shuffled(twins(gas(n))); }},
+      {"normal cloud", normal_cloud},
+      {"dense centre", [](N n) { return with_a_dense_centre(n, 1); }},
+      {"denser centre", [](N n) { return with_a_dense_centre(n, 2); }},
+      {"densest centre", [](N n) { return with_a_dense_centre(n, 4); }},
       {"jets side by side", jets}};
   return all;
 }
@@ -166,6 +232,16 @@ TEST_P(HardGeometries, keep_every_tolerance_over_all_beads) {
     }
 }
 
+// What is said of the charges around a dense centre is wrong for many more of them.
+TEST_P(HardGeometries, of_many_charges_with_a_dense_centre_keep_the_tolerance) {
+  for (const double decades : {1.0, 2.0, 3.0}) {
+    const Chain c = with_a_dense_centre(20'000, decades);
+    for (const double tolerance : {1e-2, 1e-3, 1e-5})
+      EXPECT_LE(error_of(c, {.solver = GetParam(), .tolerance = tolerance}), tolerance)
+          << decades << ' ' << tolerance;
+  }
+}
+
 /// Pairs that are summed one by one, per charge.
 double near_pairs(const Chain& c, std::unique_ptr<detail::FarField> far_field) {
   const detail::FarField& watched = *far_field;
@@ -188,14 +264,23 @@ TEST_P(HardGeometries, cost_about_as_much_as_those_without_the_difficulty) {
   EXPECT_LE(pairs(with_outliers(gas(n), 1, 100)), 1.5 * in_gas);
   EXPECT_LE(pairs(with_outliers(gas(n), 1, 1e12)), 1.5 * in_gas);
   EXPECT_LE(pairs(with_outliers(gas(n), 20, 1e9)), 2 * in_gas);
-  EXPECT_LE(pairs(shuffled(blobs(n, 5, 1e-4))), 2 * in_gas);
-  EXPECT_LE(pairs(twins(straight_chain(n))), 2 * on_a_line);
+  EXPECT_LE(pairs(shuffled(blobs(n, 5, 1e-4))), 3 * in_gas); // more exactly
+  EXPECT_LE(pairs(with_outliers_everywhere(gas(n), 10)), 3 * in_gas);
+  EXPECT_LE(pairs(with_outliers_everywhere(coil(n), 2)), 2 * in_gas);
+  for (const double distance : {0.0, 1e-12, 1e-6, 1e-2})
+    EXPECT_LE(pairs(twins(straight_chain(n), distance)), 2 * on_a_line) << distance;
+  EXPECT_LE(pairs(twins(gas(n), 1e-9)), 1.5 * in_gas);
+  EXPECT_LE(pairs(with_a_knot(straight_chain(n), 200, 1e-9)), 2 * on_a_line);
+  EXPECT_LE(pairs(with_a_knot(gas(n), 200, 1e-9)), 2 * in_gas);
+  EXPECT_LE(pairs(folded(n, 1e-4)), 3 * on_a_line);
+  EXPECT_LE(pairs(places_in_turn(n, 40, 0)), 1.5 * in_gas);
+  EXPECT_LE(pairs(places_in_turn(n, 40, 1e-9)), 1.5 * in_gas);
   EXPECT_LE(pairs(with_a_gap(coil(n), 1e4)), 1.5 * on_a_coil + 100);
   EXPECT_LE(pairs(blobs(n, 40, 0)), 1.5 * in_gas);
   EXPECT_LE(pairs(Chain(n)), 32); // all in one place
   // One unordered cloud after the other, each as large as it may be without notice.
-  EXPECT_LE(pairs(blobs(n, 5, 1e-4)), 2 * in_gas);
-  EXPECT_LE(pairs(jets(n)), 2 * in_gas);
+  EXPECT_LE(pairs(blobs(n, 5, 1e-4)), 3 * in_gas);
+  EXPECT_LE(pairs(jets(n)), 2.5 * in_gas);
 }
 
 TEST_P(HardGeometries, of_one_place_are_all_coincident_pairs) {
@@ -256,10 +341,8 @@ private:
 TEST_P(Mat, beside_a_jet_leaves_the_tolerance_to_the_beads_that_fly) {
   for (const double tolerance : {1e-3, 1e-5})
     EXPECT_LE(error(ToleranceNorm::moving, tolerance), tolerance) << tolerance;
-  // Why there is such a norm; the treecode's criterion leaves more to spare.
-  const double in_global = error(ToleranceNorm::global, 1e-5);
-  EXPECT_GT(in_global, GetParam() == std::string("fmm") ? 4e-5 : 4e-7);
-  EXPECT_GT(in_global, 8 * error(ToleranceNorm::moving, 1e-5));
+  // Why there is such a norm.
+  EXPECT_GT(error(ToleranceNorm::global, 1e-5), 2 * error(ToleranceNorm::moving, 1e-5));
 }
 
 INSTANTIATE_TEST_SUITE_P(Solvers, Mat, testing::Values("treecode", "fmm"),

@@ -50,6 +50,25 @@ TEST(OwnImages, of_a_point_charge_are_the_sum_over_all_of_them) {
   }
 }
 
+// A trial step that is rejected later may have put it anywhere, where trigamma has poles or no value.
+TEST(OwnImages, of_a_charge_beyond_the_plates_are_those_at_them) {
+  const MirroredPiece piece{.charge = q, .x = 2 * h, .length = 4e-3, .radius = 1e-5};
+  const double beyond = own_image_force(piece, plates);
+  EXPECT_TRUE(std::isfinite(beyond));
+  for (const double x : {3 * h, 1e200})
+    EXPECT_NEAR(
+        own_image_force({.charge = q, .x = x, .length = 4e-3, .radius = 1e-5}, plates)
+            / beyond,
+        1, 1e-6)
+        << x;
+  for (const double x : {-h, -2 * h, -1e200})
+    EXPECT_NEAR(
+        own_image_force({.charge = q, .x = x, .length = 4e-3, .radius = 1e-5}, plates)
+            / -beyond,
+        1, 1e-6)
+        << x;
+}
+
 TEST(OwnImages, of_a_piece_of_jet_stay_finite_at_the_plate) {
   const MirroredPiece piece{.charge = q, .x = h - 1e-3, .length = 4e-3, .radius = 1e-5};
   const double d = 1e-3, l = 4e-3;

@@ -4,9 +4,13 @@
 #include "ehdjet/run_files/run_reader.hpp"
 
 #include <gtest/gtest.h>
+#include <hdf5.h>
 
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
+#include <fstream>
+#include <random>
 #include <string>
 
 #include "io/fabricated_run.hpp"
@@ -15,7 +19,7 @@ namespace ehdjet::testing {
 namespace {
 
 TEST(CheckpointFile, has_the_last_one_at_once_and_after_the_end) {
-  const ScratchFolder folder;
+  const Folder folder;
   const auto path = folder / "run.h5";
   {
     const auto file = std::make_shared<RunFile>(path, false, fabricated_provenance(), 1e9);
@@ -29,7 +33,7 @@ TEST(CheckpointFile, has_the_last_one_at_once_and_after_the_end) {
 }
 
 TEST(CheckpointFile, flushes_what_was_written_before) {
-  const ScratchFolder folder;
+  const Folder folder;
   const auto file =
       std::make_shared<RunFile>(folder / "run.h5", false, fabricated_provenance(), 1e9);
   const auto frames = record_frames(file, 1e-5, *test::table_with_stress());
@@ -40,7 +44,7 @@ TEST(CheckpointFile, flushes_what_was_written_before) {
 }
 
 TEST(CheckpointFile, does_not_grow_with_the_number_of_checkpoints) {
-  const ScratchFolder folder;
+  const Folder folder;
   const auto path = folder / "run.h5";
   const auto file = std::make_shared<RunFile>(path, false, fabricated_provenance(), 1e9);
   for (std::uint64_t k = 0; k < 12; ++k) file->keep(fabricated_checkpoint(k));
@@ -49,8 +53,74 @@ TEST(CheckpointFile, does_not_grow_with_the_number_of_checkpoints) {
   EXPECT_EQ(std::filesystem::file_size(path), size);
 }
 
+// Wherever it is in the numbers.
+TEST(CheckpointFile, with_a_flipped_bit_is_refused) {
+  const Folder folder;
+  const auto path = folder / "run.h5";
+  Checkpoint kept = fabricated_checkpoint(5);
+  kept["y"].assign(11000, std::sqrt(2)); // eight bytes that are nowhere else in the file
+  {
+    const auto file = std::make_shared<RunFile>(path, false, fabricated_provenance(), 1e9);
+    file->keep(kept);
+    file->finish("complete", "", {}, {});
+  }
+  const std::string whole = text_of(path);
+  const std::string number(reinterpret_cast<const char*>(kept.at("y").data()),
+                           sizeof(double));
+  std::mt19937 bits(4);
+  int flipped = 0;
+  for (auto place = whole.find(number); place != std::string::npos;
+       place = whole.find(number, place + number.size())) {
+    if (flipped > 100 && bits() % 100 != 0) continue;
+    std::string damaged = whole;
+    damaged[place + bits() % number.size()] ^= static_cast<char>(1U << bits() % 8);
+    std::ofstream(path, std::ios::binary) << damaged;
+    ++flipped;
+    try {
+      (void)RunReader(path).checkpoint();
+      ADD_FAILURE() << place;
+    } catch (const InputError& e) {
+      const std::string message = e.what();
+      EXPECT_NE(message.find("run.h5"), std::string::npos) << message;
+      EXPECT_NE(message.find("/checkpoint/a/numbers"), std::string::npos) << message;
+      EXPECT_NE(message.find("checksum"), std::string::npos) << message;
+    }
+  }
+  EXPECT_GT(flipped, 100);
+}
+
+TEST(CheckpointFile, without_checksum_is_refused) {
+  const Folder folder;
+  const auto path = folder / "run.h5";
+  {
+    const auto file = std::make_shared<RunFile>(path, false, fabricated_provenance(), 1e9);
+    file->keep(fabricated_checkpoint(0));
+  }
+  const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+  EXPECT_GE(H5Adelete_by_name(file, "checkpoint/a/offset", "crc32", H5P_DEFAULT), 0);
+  H5Fclose(file);
+  try {
+    (void)RunReader(path).checkpoint();
+    ADD_FAILURE();
+  } catch (const InputError& e) {
+    EXPECT_NE(std::string(e.what()).find("/checkpoint/a/offset has no checksum"),
+              std::string::npos)
+        << e.what();
+  }
+}
+
+TEST(CheckpointFile, with_other_lists_than_the_one_before_is_an_error) {
+  const Folder folder;
+  const auto file =
+      std::make_shared<RunFile>(folder / "run.h5", false, fabricated_provenance(), 1e9);
+  file->keep(fabricated_checkpoint(0));
+  Checkpoint other = fabricated_checkpoint(1);
+  other["another"] = {1};
+  EXPECT_THROW(file->keep(other), RunError);
+}
+
 TEST(CheckpointFile, without_one_says_how_to_get_one) {
-  const ScratchFolder folder;
+  const Folder folder;
   const auto path = folder / "run.h5";
   const auto file = std::make_shared<RunFile>(path, false, fabricated_provenance(), 1e9);
   try {

@@ -6,6 +6,8 @@
 
 #include <cstdlib>
 #include <cstring>
+#include <filesystem>
+#include <fmt/format.h>
 #include <functional>
 #include <numbers>
 #include <sstream>
@@ -36,7 +38,7 @@ std::vector<double> numbers_in(const std::string& line, char separator) {
 using Rows = std::vector<std::vector<double>>;
 
 // Header and numbers of a CSV export.
-std::pair<std::string, Rows> csv(const ScratchFolder& folder,
+std::pair<std::string, Rows> csv(const Folder& folder,
                                  const std::function<void(TextOutput&)>& write) {
   TextOutput output(folder / "out.csv", true);
   write(output);
@@ -49,7 +51,7 @@ std::pair<std::string, Rows> csv(const ScratchFolder& folder,
 class Export : public ::testing::Test {
 protected:
   Export() { write_run(folder_ / "run.h5", 9); }
-  ScratchFolder folder_;
+  Folder folder_;
 };
 
 TEST_F(Export, observables_have_the_documented_columns_and_keep_every_bit) {
@@ -162,19 +164,72 @@ TEST_F(Export, xyz_has_each_frame_with_its_count_its_time_and_its_species) {
     EXPECT_EQ(std::strtod(time.c_str(), nullptr), f.time);
     for (std::size_t b = 0; b < f.rows(); ++b) {
       const std::string& row = lines.at(line + 2 + b);
-      const char kind = b == 0                ? 'N'
-                        : f["embryo"][b] != 0 ? 'E'
-                        : f["landed"][b] != 0 ? 'L'
-                                              : 'B';
-      EXPECT_EQ(row[0], kind);
+      const std::string kind = b == 0                ? "N"
+                               : f["embryo"][b] != 0 ? "Es"
+                               : f["landed"][b] != 0 ? "La"
+                                                     : "B";
+      EXPECT_EQ(row.substr(0, row.find(' ')), kind);
       const std::vector<double> expected = {f["x"][b],      f["y"][b],      f["z"][b],
                                             f["vx"][b],     f["vy"][b],     f["vz"][b],
                                             f["radius"][b], f["stress"][b], f["charge"][b]};
-      EXPECT_EQ(numbers_in(row.substr(2), ' '), expected);
+      EXPECT_EQ(numbers_in(row.substr(row.find(' ') + 1), ' '), expected);
     }
     line += 2 + f.rows();
   }
   EXPECT_EQ(line, lines.size());
+}
+
+TEST_F(Export, the_deposit_as_xyz_has_every_bead_that_landed) {
+  const RunReader run(folder_ / "run.h5");
+  const RunTable deposit = run.table("deposit");
+  ASSERT_GT(deposit.rows(), 2U);
+  TextOutput output(folder_ / "deposit.xyz", false);
+  export_deposit_xyz(run, output);
+  const std::vector<std::string> lines = lines_of(text_of(folder_ / "deposit.xyz"));
+  ASSERT_EQ(lines.size(), deposit.rows() + 2);
+  EXPECT_EQ(lines[0], std::to_string(deposit.rows()));
+  EXPECT_NE(lines[1].find(":landing_radius:R:1"), std::string::npos);
+  for (std::size_t k = 0; k < deposit.rows(); ++k) {
+    ASSERT_TRUE(lines[k + 2].starts_with("La "));
+    const std::vector<double> row = numbers_in(lines[k + 2].substr(3), ' ');
+    std::size_t place = 0;
+    for (const char* name : {"x", "y", "z", "vx", "vy", "vz", "radius", "stress", "charge"})
+      EXPECT_EQ(row.at(place++), deposit[name][k]) << name;
+  }
+}
+
+TEST_F(Export, the_deposit_for_paraview_is_a_line_through_every_bead_that_landed) {
+  const RunReader run(folder_ / "run.h5");
+  TextOutput output(folder_ / "deposit.vtp", false);
+  export_deposit_vtk(run, output);
+  const std::string text = text_of(folder_ / "deposit.vtp");
+  const std::string beads = std::to_string(run.table("deposit").rows());
+  for (const std::string& part :
+       {"NumberOfPoints=\"" + beads + "\"", std::string("NumberOfLines=\"1\""),
+        "Name=\"connectivity\" NumberOfComponents=\"1\" NumberOfTuples=\"" + beads + "\"",
+        std::string("Name=\"landing_radius\"")})
+    EXPECT_NE(text.find(part), std::string::npos) << part;
+}
+
+TEST_F(Export, xdmf_refers_to_the_rows_of_each_frame) {
+  const RunReader run(folder_ / "run.h5");
+  std::filesystem::create_directory(folder_ / "below");
+  TextOutput output(folder_ / "below/run.xdmf", false);
+  export_xdmf(run, {}, folder_ / "below/run.xdmf", output);
+  const std::string text = text_of(folder_ / "below/run.xdmf");
+  std::size_t begin = 0, frames = 0;
+  for (const double time : run.frame_times()) {
+    const std::size_t beads = run.frame(frames++).rows();
+    EXPECT_NE(text.find(fmt::format("<Time Value=\"{:.17g}\"/>", time)), std::string::npos);
+    EXPECT_NE(text.find(fmt::format(">{} 1 {}</DataItem>", begin, beads)),
+              std::string::npos);
+    begin += beads;
+  }
+  EXPECT_NE(text.find(fmt::format("Dimensions=\"{}\" NumberType=\"Float\" Precision=\"8\" "
+                                  "Format=\"HDF\">../run.h5:/beads/x<",
+                                  begin)),
+            std::string::npos);
+  EXPECT_NE(text.find(":/beads/stress<"), std::string::npos);
 }
 
 TEST_F(Export, xyz_at_a_time_is_one_frame) {
@@ -254,8 +309,7 @@ TEST_F(Export, vtk_overwrites_only_on_demand_and_then_leaves_no_frame_of_the_old
 TEST_F(Export, an_existing_file_is_overwritten_only_on_demand) {
   const RunReader run(folder_ / "run.h5");
   EXPECT_THROW(TextOutput(folder_ / "run.h5", false), InputError);
-  TextOutput nowhere(folder_ / "absent/out.csv", false);
-  EXPECT_THROW(export_table(run, "deposit", nowhere), InputError);
+  EXPECT_THROW(TextOutput(folder_ / "absent/out.csv", false), InputError);
   TextOutput full("/dev/full", true);
   EXPECT_THROW(export_table(run, "deposit", full), RunError);
 }

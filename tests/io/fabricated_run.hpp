@@ -13,35 +13,14 @@
 #include <fstream>
 #include <iterator>
 #include <string>
-#include <unistd.h>
 #include <vector>
 
+#include "support/folder.hpp"
 #include "support/stress.hpp"
 
 namespace ehdjet::testing {
 
-/// An empty folder that goes away with the test.
-class ScratchFolder {
-public:
-  ScratchFolder()
-      : path_(std::filesystem::temp_directory_path()
-              / ("ehdjet_io." + std::to_string(::getpid()) + "."
-                 + ::testing::UnitTest::GetInstance()->current_test_info()->name())) {
-    std::filesystem::remove_all(path_);
-    std::filesystem::create_directory(path_);
-  }
-  ~ScratchFolder() { std::filesystem::remove_all(path_); }
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
-
-  [[nodiscard]] std::filesystem::path operator/(const std::string& name) const {
-    return path_ / name;
-  }
-  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-
-private:
-  std::filesystem::path path_;
-};
+using test::Folder;
 
 /// A jet that no physics made: any number of beads, different numbers in every place.
 struct FabricatedJet {

@@ -32,7 +32,7 @@ RefinementRecord record(int i) {
 
 TEST(RefinementRecords, come_back_as_they_were_written) {
   for (const bool with_coulomb : {false, true}) {
-    const ScratchFolder folder;
+    const Folder folder;
     {
       const auto file =
           std::make_shared<RunFile>(folder / "run.h5", false, fabricated_provenance(), 1e9);
@@ -73,7 +73,7 @@ TEST(RefinementRecords, come_back_as_they_were_written) {
 }
 
 TEST(RefinementRecords, are_missed_with_the_key_that_asks_for_them) {
-  const ScratchFolder folder;
+  const Folder folder;
   write_run(folder / "run.h5", 1);
   const RunReader run(folder / "run.h5");
   try {
@@ -98,7 +98,7 @@ private:
 };
 
 TEST(AccountBook, keeps_columns_in_their_order_with_their_units) {
-  const ScratchFolder folder;
+  const Folder folder;
   const auto accounts = std::make_shared<MadeUp>();
   {
     const auto file =
@@ -141,7 +141,7 @@ FabricatedJet straight_jet(std::size_t links, double unit, double time) {
 }
 
 TEST(ResolvingPower, is_that_of_the_link_at_each_lambda_averaged_over_the_later_half) {
-  const ScratchFolder folder;
+  const Folder folder;
   constexpr double l = 2e-4;
   {
     const auto file =
@@ -187,7 +187,7 @@ TEST(ResolvingPower, is_that_of_the_link_at_each_lambda_averaged_over_the_later_
 }
 
 TEST(ResolvingPower, takes_the_link_across_an_embryo_as_one) {
-  const ScratchFolder folder;
+  const Folder folder;
   constexpr double l = 1e-3;
   {
     const auto file =

@@ -8,8 +8,10 @@
 #include <hdf5.h>
 
 #include <cmath>
+#include <memory>
 #include <numbers>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "io/fabricated_run.hpp"
@@ -62,8 +64,37 @@ std::vector<std::string> names_in(const fs::path& path, const char* group) {
 
 using Names = std::vector<std::string>;
 
+// No object of the file has a time of its own, so that the same run gives the same bytes.
+TEST(RunFile, has_no_times_in_it) {
+  const Folder folder;
+  {
+    const auto file =
+        std::make_shared<RunFile>(folder / "run.h5", false, fabricated_provenance(), 1e9);
+    record_frames(file, 1e-5, *test::table_with_stress())
+        ->observe(fabricated_jet(0).snapshot());
+    file->keep(fabricated_checkpoint(0));
+    file->finish("complete", "", {}, {});
+  }
+  const hid_t file = H5Fopen((folder / "run.h5").c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+  Names with_times, all;
+  std::pair<Names*, Names*> found{&with_times, &all};
+  H5Ovisit2(
+      file, H5_INDEX_NAME, H5_ITER_INC,
+      [](hid_t, const char* name, const H5O_info_t* info, void* to) -> herr_t {
+        const auto& [timed, every] = *static_cast<std::pair<Names*, Names*>*>(to);
+        every->emplace_back(name);
+        if (info->mtime != 0 || info->ctime != 0 || info->btime != 0)
+          timed->emplace_back(name);
+        return 0;
+      },
+      &found, H5O_INFO_TIME);
+  H5Fclose(file);
+  EXPECT_GT(all.size(), 10U);
+  EXPECT_EQ(with_times, Names{});
+}
+
 TEST(RunFile, what_was_written_is_read_back_bit_for_bit) {
-  const ScratchFolder folder;
+  const Folder folder;
   constexpr std::size_t frames = 300; // 9,600 beads: more than two chunks
   write_run(folder / "run.h5", frames);
   const RunReader run(folder / "run.h5");
@@ -89,7 +120,7 @@ TEST(RunFile, what_was_written_is_read_back_bit_for_bit) {
 }
 
 TEST(RunFile, says_where_it_came_from_and_how_it_ended) {
-  const ScratchFolder folder;
+  const Folder folder;
   write_run(folder / "run.h5", 3);
   const RunReader run(folder / "run.h5");
   EXPECT_EQ(run.attribute("status"), "complete");
@@ -101,7 +132,7 @@ TEST(RunFile, says_where_it_came_from_and_how_it_ended) {
 }
 
 TEST(RunFile, has_only_the_parts_that_were_asked_for) {
-  const ScratchFolder folder;
+  const Folder folder;
   {
     const auto bare = std::make_shared<RunFile>(folder / "bare.h5", false, Provenance{}, 1);
   }
@@ -131,7 +162,7 @@ TEST(RunFile, has_only_the_parts_that_were_asked_for) {
 }
 
 TEST(RunFile, nobody_writes_to_one_that_is_finished) {
-  const ScratchFolder folder;
+  const Folder folder;
   const auto file = std::make_shared<RunFile>(folder / "run.h5", false, Provenance{}, 1);
   const auto shown = record_frames(file, 1, *test::table_with_stress());
   file->finish("complete", "", {}, {});
@@ -140,7 +171,7 @@ TEST(RunFile, nobody_writes_to_one_that_is_finished) {
 }
 
 TEST(RunFile, records_the_method_if_it_was_chosen) {
-  const ScratchFolder folder;
+  const Folder folder;
   const auto records = [&](const std::optional<MethodRecord>& method) {
     RunStatistics statistics;
     statistics.method = method;
@@ -163,7 +194,7 @@ TEST(RunFile, records_the_method_if_it_was_chosen) {
 }
 
 TEST(RunFile, every_data_set_has_a_unit_and_a_description) {
-  const ScratchFolder folder;
+  const Folder folder;
   write_run(folder / "run.h5", 2);
   const hid_t file = H5Fopen((folder / "run.h5").c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
   std::size_t data_sets = 0;
@@ -181,7 +212,7 @@ TEST(RunFile, every_data_set_has_a_unit_and_a_description) {
 }
 
 TEST(RunFile, the_radius_in_a_frame_keeps_the_volume_of_each_link) {
-  const ScratchFolder folder;
+  const Folder folder;
   write_run(folder / "run.h5", 20);
   const RunReader run(folder / "run.h5");
   for (std::size_t k = 0; k < 20; ++k) {
@@ -217,7 +248,7 @@ FabricatedJet triangle(double time, double inserted, double removed) {
 }
 
 TEST(RunFile, observables_are_what_their_definitions_say) {
-  const ScratchFolder folder;
+  const Folder folder;
   {
     const auto file = std::make_shared<RunFile>(folder / "run.h5", false, Provenance{}, 1);
     const auto observables = record_observables(file, 0.5);
@@ -239,7 +270,7 @@ TEST(RunFile, observables_are_what_their_definitions_say) {
     return run.column("observables", column)[1];
   };
   EXPECT_EQ(last("time"), 0.5);
-  EXPECT_EQ(last("beads"), 2);
+  EXPECT_EQ(last("beads"), 3);
   EXPECT_EQ(last("tip_x"), 3);
   EXPECT_EQ(last("tip_yz"), 3);
   EXPECT_EQ(last("path_length"), 5 + 1);
@@ -257,7 +288,7 @@ TEST(RunFile, observables_are_what_their_definitions_say) {
 }
 
 TEST(RunFile, an_existing_file_is_overwritten_only_on_demand) {
-  const ScratchFolder folder;
+  const Folder folder;
   write_run(folder / "run.h5", 5);
   const std::string before = text_of(folder / "run.h5");
   try {
@@ -274,7 +305,7 @@ TEST(RunFile, an_existing_file_is_overwritten_only_on_demand) {
 }
 
 TEST(RunFile, one_that_cannot_be_created_destroys_nothing_and_leaves_nothing) {
-  const ScratchFolder folder;
+  const Folder folder;
   EXPECT_THROW(RunFile(folder / "absent/run.h5", false, {}, 1), InputError);
   EXPECT_THROW(RunFile(folder.path(), true, {}, 1), InputError);
   EXPECT_THROW(RunFile("/dev/null", true, {}, 1), InputError);
@@ -285,7 +316,7 @@ TEST(RunFile, one_that_cannot_be_created_destroys_nothing_and_leaves_nothing) {
 }
 
 TEST(RunFile, is_readable_at_every_flush_while_it_grows) {
-  const ScratchFolder folder;
+  const Folder folder;
   const auto file =
       std::make_shared<RunFile>(folder / "run.h5", false, fabricated_provenance(), 1e9);
   const auto shown = record_frames(file, 1e-5, *test::table_with_stress());
@@ -306,7 +337,7 @@ TEST(RunFile, columns_of_many_beads_are_read_back_whatever_the_number_of_threads
   constexpr std::size_t chunk = 256;
   for (const std::size_t threads : {1U, 3U}) {
     const ThreadCount count(threads);
-    const ScratchFolder folder;
+    const Folder folder;
     RunFile file(folder / "run.h5", false, Provenance{}, 1e9);
     Column& real = file.add_column("budget", {"real", "m", "", ColumnType::real}, chunk);
     Column& flag = file.add_column("budget", {"flag", "1", "", ColumnType::flag}, chunk);
@@ -331,7 +362,7 @@ TEST(RunFile, columns_of_many_beads_are_read_back_whatever_the_number_of_threads
 }
 
 TEST(RunFile, many_flushes_do_not_make_a_large_file) {
-  const ScratchFolder folder;
+  const Folder folder;
   const auto size_with = [&](const std::string& name, double flush_interval) {
     {
       const auto file =

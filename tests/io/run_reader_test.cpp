@@ -29,7 +29,7 @@ std::string complaint(const fs::path& path) {
 }
 
 TEST(RunReader, says_why_a_file_is_no_run) {
-  const ScratchFolder folder;
+  const Folder folder;
   EXPECT_EQ(complaint(folder / "absent.h5"), "does not exist");
   EXPECT_EQ(complaint(folder.path()), "is a folder, not a run file");
   std::ofstream(folder / "empty.h5").flush();
@@ -43,7 +43,7 @@ TEST(RunReader, says_why_a_file_is_no_run) {
 }
 
 TEST(RunReader, rejects_a_truncated_file_wherever_it_was_cut) {
-  const ScratchFolder folder;
+  const Folder folder;
   write_run(folder / "run.h5", 20);
   const std::string whole = text_of(folder / "run.h5");
   for (const double part : {0.01, 0.3, 0.7, 0.999}) {
@@ -54,7 +54,7 @@ TEST(RunReader, rejects_a_truncated_file_wherever_it_was_cut) {
 }
 
 TEST(RunReader, rejects_a_file_of_a_later_format) {
-  const ScratchFolder folder;
+  const Folder folder;
   write_run(folder / "run.h5", 1);
   const hid_t file = H5Fopen((folder / "run.h5").c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
   const hid_t version = H5Aopen(file, "format_version", H5P_DEFAULT);
@@ -66,7 +66,7 @@ TEST(RunReader, rejects_a_file_of_a_later_format) {
 }
 
 TEST(RunReader, takes_the_nearest_frame_and_of_two_the_earlier) {
-  const ScratchFolder folder;
+  const Folder folder;
   {
     const auto file = std::make_shared<RunFile>(folder / "run.h5", false, Provenance{}, 1);
     const auto shown = record_frames(file, 0.25, *test::table_with_stress());
@@ -78,16 +78,18 @@ TEST(RunReader, takes_the_nearest_frame_and_of_two_the_earlier) {
     }
   }
   const RunReader run(folder / "run.h5");
-  EXPECT_EQ(run.nearest_frame(-1), 0U);
+  EXPECT_EQ(run.nearest_frame(0), 0U);
   EXPECT_EQ(run.nearest_frame(0.1), 0U);
   EXPECT_EQ(run.nearest_frame(0.125), 0U);
   EXPECT_EQ(run.nearest_frame(0.2), 1U);
   EXPECT_EQ(run.nearest_frame(0.625), 2U);
-  EXPECT_EQ(run.nearest_frame(7), 3U);
+  EXPECT_EQ(run.nearest_frame(0.99), 3U); // a run ends before the next frame
+  for (const double beyond : {-1., 1.01, 7.})
+    EXPECT_THROW((void)run.nearest_frame(beyond), InputError) << beyond;
 }
 
 TEST(RunReader, a_run_without_a_frame_yet_has_no_nearest_one) {
-  const ScratchFolder folder;
+  const Folder folder;
   const auto file = std::make_shared<RunFile>(folder / "run.h5", false, Provenance{}, 1);
   const auto shown = record_frames(file, 1, *test::table_with_stress());
   const RunReader run(folder / "run.h5");

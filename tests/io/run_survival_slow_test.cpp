@@ -69,7 +69,7 @@ void die_within_every_write(const std::filesystem::path& path, Check&& check,
 }
 
 TEST(RunSurvival, dying_within_any_write_of_a_small_run_keeps_the_last_flush) {
-  const ScratchFolder folder;
+  const Folder folder;
   const auto path = folder / "run.h5";
   const auto file = std::make_shared<RunFile>(path, false, fabricated_provenance(), 1e9);
   std::unique_ptr<Observer> frames, deposit, observables;
@@ -102,7 +102,7 @@ TEST(RunSurvival, dying_within_any_write_of_a_small_run_keeps_the_last_flush) {
 }
 
 TEST(RunSurvival, dying_while_the_chunk_index_is_split_keeps_the_last_flush) {
-  const ScratchFolder folder;
+  const Folder folder;
   const auto path = folder / "run.h5";
   const auto file = std::make_shared<RunFile>(path, false, fabricated_provenance(), 1e9);
   const auto frames = record_frames(file, 1e-5, *test::table_with_stress());
@@ -138,8 +138,15 @@ TEST(RunSurvival, dying_while_the_chunk_index_is_split_keeps_the_last_flush) {
   }
 }
 
+/// The last checkpoint, without the numbers of rows that the file had then.
+Checkpoint checkpoint_in(const std::filesystem::path& path) {
+  Checkpoint c = RunReader(path).checkpoint();
+  std::erase_if(c, [](const auto& part) { return part.first.starts_with("rows."); });
+  return c;
+}
+
 TEST(RunSurvival, dying_while_a_checkpoint_is_written_keeps_the_last_one_or_has_the_next) {
-  const ScratchFolder folder;
+  const Folder folder;
   const auto path = folder / "run.h5";
   const auto file = std::make_shared<RunFile>(path, false, fabricated_provenance(), 1e9);
   const auto frames = record_frames(file, 1e-5, *test::table_with_stress());
@@ -147,9 +154,8 @@ TEST(RunSurvival, dying_while_a_checkpoint_is_written_keeps_the_last_one_or_has_
     SCOPED_TRACE("checkpoint " + std::to_string(k));
     frames->observe(fabricated_jet(k).snapshot());
     const auto check = [&] {
-      const RunReader run(path);
       try {
-        const Checkpoint c = run.checkpoint();
+        const Checkpoint c = checkpoint_in(path);
         EXPECT_TRUE(c == fabricated_checkpoint(k)
                     || (k > 0 && c == fabricated_checkpoint(k - 1)));
       } catch (const InputError& e) {
@@ -157,7 +163,7 @@ TEST(RunSurvival, dying_while_a_checkpoint_is_written_keeps_the_last_one_or_has_
       }
     };
     die_within_every_write(path, check, [&] { file->keep(fabricated_checkpoint(k)); });
-    EXPECT_EQ(RunReader(path).checkpoint(), fabricated_checkpoint(k));
+    EXPECT_EQ(checkpoint_in(path), fabricated_checkpoint(k));
   }
 }
 

@@ -55,7 +55,7 @@ private:
 }
 
 TEST(RunSurvival, a_killed_run_keeps_every_frame_up_to_its_last_flush) {
-  const ScratchFolder folder;
+  const Folder folder;
   std::mt19937 bits(20);
   std::uniform_int_distribution<std::uint64_t> frames(1, 40);
   std::uniform_int_distribution<unsigned> microseconds(0, 3000);
@@ -101,7 +101,7 @@ private:
 };
 
 TEST(RunSurvival, a_full_disk_ends_the_run_and_leaves_the_last_flush) {
-  const ScratchFolder folder;
+  const Folder folder;
   std::uint64_t flushed = 0;
   {
     const ShortFiles limit(600 * 1024);
@@ -141,7 +141,7 @@ TEST(RunSurvival, a_full_disk_ends_the_run_and_leaves_the_last_flush) {
 }
 
 TEST(RunSurvival, a_disk_that_is_full_from_the_start_leaves_no_file) {
-  const ScratchFolder folder;
+  const Folder folder;
   const ShortFiles limit(1000);
   EXPECT_THROW(RunFile(folder / "run.h5", false, fabricated_provenance(), 1), RunError);
   EXPECT_TRUE(std::filesystem::is_empty(folder.path()));

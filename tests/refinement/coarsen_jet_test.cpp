@@ -68,6 +68,17 @@ TEST(Coarsening, joins_a_link_that_is_no_thread_any_more_with_its_neighbour) {
   }
 }
 
+// Or cutting and joining would never end.
+TEST(Coarsening, joins_no_stubs_that_would_be_cut_into_stubs_at_once) {
+  JetState jet = straight_jet(std::vector<double>(6, 0.6));
+  for (double& v : jet.volume) v = 1e-2; // radii of 0.073
+  RefinementRule rule;
+  rule.length = 1, rule.shortest = 10;
+  EXPECT_FALSE(has_short_links(jet, rule)); // 1.2 would be cut into 0.6, less than 10 radii
+  rule.length = 2;                          // joined links stay whole
+  EXPECT_TRUE(has_short_links(jet, rule));
+}
+
 TEST(Coarsening, joins_two_links_into_one_with_their_contents) {
   const std::vector<double> links{1, 1, 0.2, 0.3, 1, 1};
   const JetState old = straight_jet(links);

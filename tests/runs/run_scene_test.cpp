@@ -27,7 +27,7 @@ namespace ehdjet {
 namespace {
 
 using namespace test;
-using testing::ScratchFolder;
+using testing::Folder;
 
 Scene short_jet() {
   Scene scene = case_one("dormand-prince", 1e-6);
@@ -44,7 +44,7 @@ public:
 };
 
 TEST(RunScene, runs_a_scene_with_a_force_an_event_and_an_observer_of_ones_own) {
-  const ScratchFolder folder;
+  const Folder folder;
   const auto counter = std::make_shared<CountSteps>();
   RunOptions options;
   options.extras.forces.push_back(std::make_unique<LinearDrag>(1e-6));
@@ -71,7 +71,7 @@ TEST(RunScene, runs_a_scene_with_a_force_an_event_and_an_observer_of_ones_own) {
 }
 
 TEST(RunScene, stops_when_it_is_told_to_and_goes_on_to_the_same_bits) {
-  const ScratchFolder folder;
+  const Folder folder;
   Scene scene = short_jet();
   scene.config.output.checkpoints = 2e-4;
   const RunResult whole = run_scene(scene, folder / "whole.h5");
@@ -114,7 +114,7 @@ void stretch(const std::filesystem::path& path, const char* name, long long more
 
 // A run that is killed within a flush may leave some data sets longer than others.
 TEST(RunScene, chains_and_exports_agree_on_the_frames_of_a_killed_run) {
-  const ScratchFolder folder;
+  const Folder folder;
   run_scene(short_jet(), folder / "whole.h5");
   const auto last = static_cast<long long>(RunReader(folder / "whole.h5").frame(10).rows());
   struct Case {
@@ -157,7 +157,7 @@ public:
 };
 
 TEST(RunScene, a_failure_of_any_kind_is_in_the_file) {
-  const ScratchFolder folder;
+  const Folder folder;
   RunOptions ours, theirs;
   ours.extras.observers.push_back(std::make_shared<Spoilsport<RunError>>());
   theirs.extras.observers.push_back(std::make_shared<Spoilsport<std::logic_error>>());
@@ -180,7 +180,7 @@ TEST(RunScene, a_failure_of_any_kind_is_in_the_file) {
 }
 
 TEST(RunScene, leaves_the_number_of_threads_as_it_was) {
-  const ScratchFolder folder;
+  const Folder folder;
   const int before = omp_get_max_threads();
   Scene scene = short_jet();
   scene.config.run.end_time = 1e-5;
@@ -193,7 +193,7 @@ TEST(RunScene, leaves_the_number_of_threads_as_it_was) {
 
 // Who writes to a file shares its ownership: nothing is left that could be destroyed too early.
 TEST(RunScene, simulation_file_and_observers_may_go_in_any_order) {
-  const ScratchFolder folder;
+  const Folder folder;
   const Scene scene = short_jet();
   for (const int first : {0, 1, 2}) {
     const auto path = folder / (std::to_string(first) + ".h5");

@@ -1,12 +1,13 @@
 #pragma once
 
-#include "ehdjet/core/error.hpp"
 #include "ehdjet/scene/read_scene.hpp"
 
 #include <gtest/gtest.h>
 
 #include <string>
 #include <vector>
+
+#include "support/complaint.hpp"
 
 namespace ehdjet {
 
@@ -50,25 +51,9 @@ inline Scene read(const std::string& text, const std::vector<std::string>& overr
   return read_scene_text(text, "s.toml", ".", overrides);
 }
 
-/// What `action` complains about; "(accepted)" if it does not.
-template <class Action>
-std::string complaint(Action action) {
-  try {
-    action();
-  } catch (const InputError& e) {
-    return e.what();
-  }
-  return "(accepted)";
-}
 inline std::string complaint_about(const std::string& text,
                                    const std::vector<std::string>& overrides = {}) {
   return complaint([&] { read(text, overrides); });
-}
-
-inline void expect_all(const std::string& message, const std::vector<std::string>& parts) {
-  for (const auto& part : parts)
-    EXPECT_NE(message.find(part), std::string::npos)
-        << "no `" << part << "` in:\n  " << message;
 }
 
 } // namespace ehdjet

@@ -167,6 +167,36 @@ TEST(Checkpoint, goes_on_with_the_same_bits_whatever_the_method) {
   }
 }
 
+TEST(Checkpoint, does_not_change_the_run) {
+  for (const std::string method : {"dormand-prince", "dop853", "ros34pw2", "two-rate"}) {
+    SCOPED_TRACE(method);
+    Scene scene = refined_case(0.4 * cm);
+    integrate(scene, method, 1e-5);
+    const auto without = build_simulation(scene);
+    without->run_until(6e-3);
+    CheckedRun with(scene, 1e-4);
+    with.simulation->run_until(6e-3);
+    EXPECT_GT(with.checkpoints.size(), 15U);
+    expect_same_end(*without, *with.simulation);
+  }
+}
+
+TEST(Checkpoint, is_also_made_when_someone_wants_it) {
+  const Scene scene = case_one("dormand-prince", 1e-6);
+  CheckedRun whole(scene, 1);
+  int asked = 0;
+  whole.simulation->make_checkpoints_when([&] { return ++asked % 20 == 0; });
+  whole.simulation->run_until(6e-4);
+  ASSERT_GE(whole.checkpoints.size(), 2U);
+  EXPECT_EQ(whole.checkpoints.size(), static_cast<std::size_t>(asked / 20));
+  for (const Checkpoint& c : whole.checkpoints) {
+    const auto rest = build_simulation(scene);
+    rest->restore(c);
+    rest->run_until(6e-4);
+    expect_same_end(*whole.simulation, *rest);
+  }
+}
+
 TEST(Checkpoint, goes_on_with_the_same_bits_with_fixed_steps) {
   Scene scene = case_one();
   integrate_with_fixed_steps(scene, "rk4", 1e-6);
@@ -429,6 +459,7 @@ TEST(Checkpoint, without_any_of_its_parts_gives_other_bits) {
            {"expected_event", {never}},
            {"restart_step", {0, 0, 0}},
            {"after_event", {}},
+           {"integrator.first_rate", {}},
            {"step_size_control.previous_error", {1e-4}}})
     EXPECT_TRUE(matters(jet, 1.5e-3, 1e-5, name, fresh)) << name;
 
@@ -436,6 +467,10 @@ TEST(Checkpoint, without_any_of_its_parts_gives_other_bits) {
            {"landing.steps_per_landing", 100}, {"landing.last_step", 0}})
     EXPECT_TRUE(matters(landing_scene("dormand-prince"), 15e-3, 1.7e-3, name, {fresh}))
         << name;
+
+  Scene two_rates = refined_case(0.4 * cm);
+  integrate(two_rates, "two-rate", 1e-5);
+  EXPECT_TRUE(matters(two_rates, 8e-3, 1.1e-3, "two_rate.ready", {0}));
 
   Scene stiff = case_one("auto", 1e-5); // goes to and fro between the methods
   stiff.config.viscoelasticity = ViscoelasticityConfig{1e6, 2};

@@ -78,5 +78,37 @@ TEST(Observers, change_nothing) {
   EXPECT_EQ(alone->jet().y, watched->jet().y);
 }
 
+// 3 * 1e-5 is more than 3e-5 in doubles, and so it is for 11 of these 30 ends.
+TEST(Observers, see_the_end_of_every_run_to_a_multiple_of_their_interval) {
+  for (int k = 1; k <= 30; ++k) {
+    const double end = std::stod(std::to_string(k) + "e-5");
+    std::vector<double> times;
+    const auto simulation = build_simulation(case_one());
+    simulation->add(std::make_shared<Watch>(1e-5, [&](const JetSnapshot& snapshot) {
+      times.push_back(snapshot.time);
+      if (times.size() == static_cast<std::size_t>(k) + 1) {
+        EXPECT_EQ(snapshot.columns.flat.size(), simulation->jet().y.size());
+      }
+    }));
+    simulation->run_until(end);
+    ASSERT_EQ(times.size(), static_cast<std::size_t>(k) + 1) << end;
+    EXPECT_LE(times.back(), end);
+    EXPECT_NEAR(times.back() / end, 1, 1e-15);
+  }
+}
+
+TEST(Observers, do_not_see_times_beyond_the_end) {
+  std::vector<double> times;
+  const auto simulation = build_simulation(case_one());
+  simulation->add(std::make_shared<Watch>(
+      1e-5, [&](const JetSnapshot& snapshot) { times.push_back(snapshot.time); }));
+  simulation->run_until(2.5e-5);
+  EXPECT_EQ(times.size(), 3U);
+  simulation->run_until(3e-5); // goes on where it was
+  EXPECT_EQ(times.size(), 4U);
+  simulation->run_until(4e-5);
+  EXPECT_EQ(times.size(), 5U);
+}
+
 } // namespace
 } // namespace ehdjet

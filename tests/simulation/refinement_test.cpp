@@ -45,7 +45,7 @@ TEST(RefinedJet, is_cut_at_the_end_of_a_run_too_and_with_fixed_steps_and_snapped
     run.simulation->run_until(4e-3);
     ASSERT_FALSE(run.records.empty());
     EXPECT_NEAR(run.records.back().time, 4e-3, 1e-15);
-    EXPECT_EQ(run.records.back().beads_after, run.simulation->jet().links());
+    EXPECT_EQ(run.records.back().beads_after, run.simulation->jet().beads());
   }
 }
 

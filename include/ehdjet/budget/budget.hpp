@@ -36,6 +36,7 @@ public:
   void end_step(double t, double theta) override;
   void before_event(const Event& event, const JetState& jet) override;
   void after_event(const Event& event, const JetState& jet) override;
+  void archive(const Archive& a) override;
 
   [[nodiscard]] std::span<const Column> columns() const override { return columns_; }
   void measure(const JetSnapshot& snapshot, std::span<double> row) override;
@@ -45,6 +46,7 @@ private:
     CompensatedSum energy, x, y, z;
     void add(const Flow& flow, double factor);
     [[nodiscard]] Vec3 momentum() const { return {x, y, z}; }
+    void archive(const Archive& a) { a("energy", energy), a("x", x), a("y", y), a("z", z); }
   };
 
   void advance(double t, double theta);

@@ -3,15 +3,27 @@
 #include "ehdjet/core/compensated_sum.hpp"
 #include "ehdjet/core/error.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
 namespace ehdjet {
+
+/// Whether all values are finite numbers.
+[[nodiscard]] inline bool all_finite(const std::vector<double>& values) {
+  return std::ranges::all_of(values, [](double v) { return std::isfinite(v); });
+}
+[[nodiscard]] inline bool none_negative(const std::vector<double>& values) {
+  return std::ranges::none_of(values, [](double v) { return v < 0; });
+}
 
 /// Named lists of numbers with which a run can be continued with the same bits. Counts and flags
 /// are stored as numbers, exact up to 2^53; an optional value is a list of one number or none.
@@ -22,7 +34,10 @@ using Checkpoint = std::map<std::string, std::vector<double>>;
 ///
 ///     void Thing::archive(const Archive& a) { a("count", count_), a("sum", sum_); }
 ///
-/// errors : InputError if a checkpoint that is read has no list of that name and length
+/// A checkpoint that is read may have been made by anybody: a count is a whole number, a flag 0 or 1, and nothing
+/// is NaN. What else must hold of a member, its `archive` says with `require`.
+/// errors : InputError that names the list if a checkpoint that is read breaks such a rule or has no list
+///          of that name and length
 class Archive {
 public:
   static Archive into(Checkpoint& to) { return {&to, nullptr, ""}; }
@@ -53,8 +68,11 @@ public:
     }
     const auto found = from_->find(path);
     if (found == from_->end()) throw InputError("the checkpoint has no " + path);
-    if (!take(found->second, value))
-      throw InputError("the checkpoint is damaged: " + path + " has another length");
+    if (const char* flaw = take(found->second, value)) refuse(path, flaw);
+  }
+  /// What has been read must keep a rule: `rule` says what is wrong otherwise ("is negative").
+  void require(std::string_view name, bool kept, std::string_view rule) const {
+    if (is_reading() && !kept) refuse(prefix_ + std::string(name), rule);
   }
 
 private:
@@ -78,25 +96,44 @@ private:
     if (value) put(list, *value);
   }
 
-  template <class T>
-  static bool take(const List& list, T& value) {
-    if (list.size() != 1) return false;
-    value = static_cast<T>(list[0]);
-    return true;
+  [[noreturn]] static void refuse(const std::string& path, std::string_view flaw) {
+    throw InputError("the checkpoint is damaged: " + path + ' ' + std::string(flaw));
   }
-  static bool take(const List& list, List& value) {
+
+  /// Null, or what is wrong with the list.
+  template <class T>
+  static const char* take(const List& list, T& value) {
+    if (list.size() != 1) return "has another length";
+    const double number = list[0];
+    if (std::isnan(number)) return "is not a number";
+    if constexpr (std::is_same_v<T, bool>) {
+      if (number != 0 && number != 1) return "is neither 0 nor 1";
+    } else if constexpr (std::is_integral_v<T>) {
+      constexpr double most =
+          std::min(0x1p53, 0x1p-1 * static_cast<double>(std::numeric_limits<T>::max()));
+      if (number != std::floor(number) || !(std::abs(number) <= most))
+        return "is not a whole number";
+      if (std::is_unsigned_v<T> && number < 0) return "is negative";
+    }
+    value = static_cast<T>(number);
+    return nullptr;
+  }
+  static const char* take(const List& list, List& value) {
+    if (std::ranges::any_of(list, [](double v) { return std::isnan(v); }))
+      return "has a value that is not a number";
     value = list;
-    return true;
+    return nullptr;
   }
-  static bool take(const List& list, CompensatedSum& value) {
-    if (list.size() != 2) return false;
+  static const char* take(const List& list, CompensatedSum& value) {
+    if (list.size() != 2) return "has another length";
+    if (!std::isfinite(list[0]) || !std::isfinite(list[1])) return "is not finite";
     value = CompensatedSum(list[0], list[1]);
-    return true;
+    return nullptr;
   }
   template <class T>
-  static bool take(const List& list, std::optional<T>& value) {
+  static const char* take(const List& list, std::optional<T>& value) {
     value.reset();
-    return list.empty() || take(list, value.emplace());
+    return list.empty() ? nullptr : take(list, value.emplace());
   }
 
   Checkpoint* to_;

@@ -48,7 +48,7 @@ public:
   [[nodiscard]] StiffPart* stiff_part() override { return this; }
 
   [[nodiscard]] std::uint64_t evaluations() const { return evaluations_; }
-  /// Pairs of beads at zero distance that were skipped so far, all evaluations together.
+  /// Pairs of beads at zero distance, which are skipped: the most in one evaluation so far.
   [[nodiscard]] std::uint64_t coincident_pairs() const { return coincident_pairs_; }
   [[nodiscard]] const CoulombSolver& solver() const { return *solver_; }
   /// What is not bound with the chains.

@@ -76,7 +76,7 @@ public:
   [[nodiscard]] std::span<const double> inverse_mass() const {
     return chain_.inverse_mass();
   }
-  /// Pairs of beads at zero distance that were skipped so far, all evaluations together.
+  /// Pairs of beads at zero distance, which are skipped: the most in one evaluation so far.
   [[nodiscard]] std::uint64_t coincident_pairs() const;
   /// Comparisons of a force with an exact method; none if there are no comparisons.
   [[nodiscard]] std::optional<TermReport::Checks> checks() const;

@@ -50,6 +50,7 @@ public:
   [[nodiscard]] bool leaves_motion() const override { return only_passed_; }
   void archive(const Archive& a) override {
     a("steps_per_landing", steps_per_landing_), a("last_step", last_step_);
+    a.require("steps_per_landing", steps_per_landing_ >= 0, "is negative");
   }
 
 private:

@@ -65,15 +65,22 @@ public:
   void apply(EventContext& context) override;
   void archive(const Archive& a) override {
     if (schedule_) schedule_->archive(a.part("schedule"));
+    if (rule_.shortest) a("instant", instant_), a("joins", joins_);
   }
 
 private:
   void pass(double t);
 
+  /// Pairs are joined so often at one instant, for links that become threads only together. Of a thick jet
+  /// the parts of a link that is cut may be no threads either: joining and cutting would never end.
+  static constexpr std::uint64_t most_joins = 10;
+
   RefinementRule rule_;
   std::optional<Schedule> schedule_;
   Refinement::Totals totals_;
   bool at_step_ends_;
+  double instant_ = -1;     ///< of the last joins [s]
+  std::uint64_t joins_ = 0; ///< at that instant
 };
 
 } // namespace ehdjet

@@ -19,7 +19,7 @@ namespace ehdjet {
 /// What a term has to tell about its work so far.
 struct TermReport {
   std::string method;                 ///< how the force is computed, for people to read
-  std::uint64_t coincident_pairs = 0; ///< pairs of beads at zero distance that were skipped
+  std::uint64_t coincident_pairs = 0; ///< at zero distance, skipped: most per evaluation
   /// Comparisons with an exact method; none if there are no comparisons.
   struct Checks {
     double last_error = 0;        ///< relative

@@ -2,7 +2,6 @@
 
 #include "ehdjet/forces/force_term.hpp"
 
-#include <optional>
 #include <vector>
 
 namespace ehdjet {
@@ -41,8 +40,7 @@ private:
   [[nodiscard]] double stress(const Stage& stage, std::size_t k) const;
 
   Options options_;
-  std::size_t reference_ = 0; // its column
-  std::optional<BeadTable::DryingColumn> drying_;
+  std::size_t reference_ = 0;              // its column
   std::vector<double> tension_per_length_; // [N/m]
 };
 

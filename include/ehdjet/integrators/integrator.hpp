@@ -57,7 +57,8 @@ public:
   virtual void start_from_rate(std::span<const double> /*rate*/) {}
   /// Forgets what is known about f(t, y). To be called after anything but `commit` has changed y.
   virtual void restart() = 0;
-  /// What the next steps depend on after a restart.
+  /// What the next steps depend on. Reading is followed by an attempt from the state that the checkpoint
+  /// has.
   virtual void archive(const Archive& /*a*/) {}
 
   /// A first step that changes no component by more than a hundredth of its error scale's size

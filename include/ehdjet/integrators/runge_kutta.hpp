@@ -35,6 +35,7 @@ public:
   void restart() override { first_known_ = false; }
   [[nodiscard]] std::span<const double> end_rate() const override;
   void start_from_rate(std::span<const double> rate) override;
+  void archive(const Archive& a) override;
   double initial_step(OdeSystem& system, double t, std::span<const double> y) override;
 
 private:

@@ -23,7 +23,10 @@ public:
   double after_rejected(double h, double error);
 
   /// After an accepted step.
-  void archive(const Archive& a) { a("previous_error", previous_error_); }
+  void archive(const Archive& a) {
+    a("previous_error", previous_error_);
+    a.require("previous_error", previous_error_ > 0, "is not positive");
+  }
 
 private:
   int order_;

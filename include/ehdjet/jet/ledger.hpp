@@ -53,7 +53,7 @@ struct JetTotals {
 struct RefinementRecord {
   double time = 0;                               ///< [s]
   std::size_t kept = 0;                          ///< bead s: beads 0 ... s are untouched
-  std::size_t beads_before = 0, beads_after = 0; ///< links of the chain
+  std::size_t beads_before = 0, beads_after = 0; ///< of the chain, bead 0 included
   JetTotals change;
   double worst_link = 0; ///< max |l/l* - 1| over the new links
 };
@@ -88,7 +88,7 @@ struct RunStatistics {
   /// Of the Coulomb force at its last check, relative; none without checks.
   std::optional<double> coulomb_error;
   std::uint64_t coulomb_violations = 0; ///< checks that found more than the tolerance
-  std::uint64_t coincident_pairs = 0; ///< pairs of beads at zero distance that were skipped
+  std::uint64_t coincident_pairs = 0;   ///< at zero distance, skipped: most per evaluation
   double shortest_step = std::numeric_limits<double>::infinity(); ///< [s]
   double longest_step = 0;                                        ///< [s]
   double wall_time = 0;                                           ///< [s]

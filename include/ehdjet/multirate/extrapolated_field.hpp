@@ -26,6 +26,8 @@ public:
   /// Adds to all that is known the field of charges that belong to the distant ones from now on, at
   /// the first beads, x, y, z: each (beads); the other beads leave.
   void add_to_past(std::span<const double> field, std::size_t beads);
+  /// What is known is of `beads` beads. errors : InputError if a checkpoint that is read says otherwise
+  void archive_past(const Archive& a, std::size_t beads);
 
 private:
   struct Known {

@@ -13,6 +13,7 @@ public:
   /// Of beads that land from `from` on [s], of a jet whose table says what evaporates.
   DryFibre(std::shared_ptr<const BeadTable> table, double from);
   void deposit(const DepositedBead& bead) override;
+  void archive(const Archive& a) override;
 
   struct Summary {
     double since = 0;      ///< of beads that landed from then on [s]

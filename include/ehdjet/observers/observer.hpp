@@ -47,6 +47,9 @@ public:
   virtual void observe(const JetSnapshot& /*snapshot*/) {}
   /// Called when the run continues from a checkpoint: `next_time` must not be before `time` [s].
   virtual void skip_to(double /*time*/) {}
+  /// What its next calls depend on, under a name of its own in `a`. It is read after `skip_to`, from the
+  /// checkpoint of a run that may not have had this observer.
+  virtual void archive(const Archive& /*a*/) {}
   /// Called when a bead has left the chain.
   virtual void deposit(const DepositedBead& /*bead*/) {}
   /// Called after a refinement, if the run records refinements.

@@ -15,6 +15,8 @@
 #include <vector>
 
 namespace ehdjet {
+
+class NewFile;
 namespace hdf5 {
 class Handle; // HDF5 is used only inside src/run_files
 }
@@ -26,6 +28,9 @@ enum class ColumnType { real, count, flag };
 struct ColumnInfo {
   std::string name, unit, description;
   ColumnType type = ColumnType::real;
+  /// The data set of the same group that has a value for each of its rows, if there is one: the HDF5
+  /// dimension scale, from which other programs know what belongs together. Its own name: it is one.
+  std::string scale = "time";
 };
 
 /// A one-dimensional data set of a run file, to which rows are appended.
@@ -44,6 +49,8 @@ public:
   void append(double value);
   void append(std::span<const double> values);
   void flush();
+  /// Rows so far.
+  [[nodiscard]] std::size_t rows() const { return first_ + rows_; }
 
 private:
   void append_bytes(const void* values, std::size_t rows);
@@ -66,6 +73,12 @@ struct Provenance {
   std::map<std::string, std::string> environment;
 };
 
+/// The file of a run that was stopped, and the last checkpoint in it.
+struct StoppedRun {
+  std::filesystem::path file;
+  Checkpoint checkpoint;
+};
+
 /// The HDF5 file of one run, which is written during the run. Layout: src/run_files/README.md.
 ///
 /// Other programs (h5py, h5dump) can read the file. If the process is killed, the file is readable
@@ -73,12 +86,16 @@ struct Provenance {
 /// write to it share its ownership: the file stays open until the last of them is destroyed, or
 /// until `finish`.
 /// errors : InputError if the file exists and `overwrite` is false, or cannot be created;
-///          RunError if writing fails (disk full)
+///          RunError if writing fails (disk full), or if the file has been removed or replaced
 class RunFile {
 public:
   /// `flush_interval` in [s].
   RunFile(const std::filesystem::path& path, bool overwrite, const Provenance& provenance,
           double flush_interval);
+  /// Goes on with the file of a stopped run: columns that are added begin with the rows that they had at
+  /// its checkpoint. The file gets its name, and replaces the old one, with `take_place`.
+  /// errors : as above; InputError if the checkpoint does not say how many rows there were
+  RunFile(const StoppedRun& run, const Provenance& provenance, double flush_interval);
   ~RunFile(); ///< closes the file; without `finish` its status remains "running"
   RunFile(const RunFile&) = delete;
   RunFile& operator=(const RunFile&) = delete;
@@ -87,32 +104,52 @@ public:
   /// is valid until the file is closed. The data set is in the file after the next flush.
   Column& add_column(const std::string& group, const ColumnInfo& info,
                      std::size_t chunk_rows);
+  /// After all columns have been added to the file of a stopped run: keeps its checkpoint and replaces
+  /// the old file.
+  void take_place();
   /// Writes an attribute of such a group.
   void describe(const std::string& group, const char* attribute, const std::string& text);
   /// Calls `append`, which appends one whole row, frame or part. Flushes if `flush_interval` has
   /// passed since the last flush.
   void write(const std::function<void()>& append);
-  /// Replaces the last checkpoint, which is kept until the new one is complete, and flushes. All
-  /// checkpoints of a run must have the same names.
+  /// Replaces the last checkpoint, which is kept until the new one is complete, and flushes. It survives a
+  /// crash of the machine. All checkpoints of a run must have the same names.
   void keep(const Checkpoint& checkpoint);
   /// Makes everything that has been written readable by other programs.
   void flush();
   /// Writes the status ("complete", "interrupted" or "failed"), a message, the statistics, the
-  /// ledger and further root attributes. Closes the file.
+  /// ledger and further root attributes, which then survive a crash of the machine. Closes the file. If the
+  /// disk is full, the file goes back to its last flush, and its status becomes "failed".
   void finish(const std::string& status, const std::string& message,
               const RunStatistics& statistics, const Ledger& ledger,
               const std::map<std::string, std::string>& notes = {});
+  /// Where the file is: under another name if it has been renamed before `finish`.
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+  /// For messages: how much of the run the file has after `finish`.
+  [[nodiscard]] std::string contents() const;
 
 private:
+  struct Source;
+
+  void create(const Provenance& provenance);
+  void publish();
+  void write_end(const std::string& status, const std::string& message,
+                 const std::function<void()>& rest);
+  void follow();
   void guard(const std::function<void()>& action);
   [[nodiscard]] bool broken() const;
   void close();
 
   std::filesystem::path path_;
+  bool removed_ = false, failed_ = false;
+  std::uint64_t records_ = 0, flushed_records_ = 0;
   std::chrono::duration<double> flush_interval_;
   std::chrono::steady_clock::time_point flushed_ = std::chrono::steady_clock::now();
+  std::unique_ptr<NewFile> unnamed_; // until the file has its name
   std::unique_ptr<hdf5::Handle> file_;
-  std::deque<Column> columns_; // a deque, because observers refer to the columns
+  std::unique_ptr<Source> source_; // what the file goes on with, until it takes its place
+  std::deque<Column> columns_;     // a deque, because observers refer to the columns
+  std::vector<std::string> names_; // of the columns, with their groups
 };
 
 } // namespace ehdjet

@@ -1,9 +1,11 @@
 #pragma once
 
 #include "ehdjet/core/checkpoint.hpp"
+#include "ehdjet/jet/bead_range.hpp"
 
 #include <cstddef>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -20,6 +22,7 @@ struct RunTable {
     std::vector<double> values;
   };
   std::vector<Column> columns;
+  std::string origin = "the run file"; ///< where it is from, for messages
 
   [[nodiscard]] std::size_t rows() const {
     return columns.empty() ? 0 : columns.front().values.size();
@@ -54,8 +57,11 @@ public:
   [[nodiscard]] const std::filesystem::path& path() const;
   [[nodiscard]] std::vector<double> frame_times() const; ///< [s]
   [[nodiscard]] Frame frame(std::size_t index) const;
+  [[nodiscard]] std::vector<BeadRange>
+  frame_rows() const; ///< of each frame in the columns of /beads
   /// Index of the frame nearest to `time` (of two equally near frames, the earlier), or of the last
-  /// frame without a time. errors : InputError if there is no frame yet
+  /// frame without a time. errors : InputError if there is no frame yet, or none so early or so late: the
+  /// last one stands for times up to the next one that would follow it
   [[nodiscard]] std::size_t nearest_frame(std::optional<double> time) const;
 
 protected:
@@ -80,8 +86,13 @@ public:
   /// A root attribute with text: "status" ("running" if the run was killed), "message", or one of
   /// the Provenance.
   [[nodiscard]] std::string attribute(const std::string& name) const;
+  [[nodiscard]] bool has_attribute(const std::string& name) const;
+  /// Whether a run writes the file at this moment, as far as the file system can tell.
+  [[nodiscard]] bool is_being_written() const;
   /// The scene: "given" as it was read, or "resolved" with all defaults.
   [[nodiscard]] std::string scene(const std::string& form) const;
+  /// The numbers of /statistics, by name; none while the run goes on and after it was killed.
+  [[nodiscard]] std::map<std::string, double> statistics() const;
 
   /// Whether the file has a part: "observables", "frames", "deposit", "refinements", "budget" or
   /// "resolving_power".
@@ -93,7 +104,9 @@ public:
   [[nodiscard]] std::vector<double> column(const std::string& part,
                                            const std::string& name) const;
   [[nodiscard]] ResolvingPowerTable resolving_power() const;
-  [[nodiscard]] Checkpoint checkpoint() const; ///< the last checkpoint
+  [[nodiscard]] std::optional<Checkpoint> last_checkpoint() const;
+  /// The same. errors : InputError if there is none
+  [[nodiscard]] Checkpoint checkpoint() const;
 };
 
 } // namespace ehdjet

@@ -261,8 +261,9 @@ struct IntegratorConfig {
 };
 
 struct RunConfig {
-  double end_time = 0;                ///< [s]
-  std::optional<std::size_t> threads; ///< default: all processors
+  double end_time = 0;                 ///< [s]
+  std::optional<std::size_t> threads;  ///< default: all processors
+  std::optional<double> max_wall_time; ///< default: none [s]
   bool operator==(const RunConfig&) const = default;
 };
 
@@ -275,6 +276,7 @@ struct OutputConfig {
   std::optional<double> budget;          ///< time between rows of energy and momentum [s]
   std::optional<double> resolving_power; ///< time between samples of l_step/l [s]
   std::optional<double> checkpoints;     ///< simulated time between checkpoints [s]
+  double checkpoint_wall_time = 300;     ///< wall time between others; 0: none [s]
   double flush = 2;                      ///< longest wall time between flushes to disk [s]
   bool operator==(const OutputConfig&) const = default;
 };

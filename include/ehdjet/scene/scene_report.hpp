@@ -13,7 +13,8 @@ namespace ehdjet {
 /// dimensionless.hpp, stability.hpp and physics_report.cpp.
 std::string scene_report(const Scene& scene);
 
-/// What in a scene does not go together with its near field; for a run to say, too.
-[[nodiscard]] std::vector<std::string> near_field_warnings(const SceneConfig& config);
+/// What a run should say before it starts: what does not go together with a near field, a fixed step that is
+/// too long, intervals that are too short. The report has them, too.
+[[nodiscard]] std::vector<std::string> run_warnings(const Scene& scene);
 
 } // namespace ehdjet

@@ -152,6 +152,14 @@ std::string allowed_text(const Choices<Enum, N>& choices) {
   return allowed_text(words);
 }
 
+/// The unit of what is allowed: "m", "-", "Pa, s" for pairs; empty for all that is no number.
+[[nodiscard]] std::string unit_text(const Range& range);
+[[nodiscard]] std::string unit_text(const Triple& triple);
+[[nodiscard]] std::string unit_text(const ModeList& modes);
+[[nodiscard]] std::string unit_text(const auto&) {
+  return "";
+}
+
 /// A value as TOML reads it back: shortest digits that give the same bits, quoted strings.
 [[nodiscard]] std::string toml_text(double value);
 [[nodiscard]] std::string toml_text(std::string_view value);
@@ -166,6 +174,9 @@ void describe(V& v, RunConfig& c) {
   v.required("end_time", c.end_time, positive("s", longest_time), "simulated time");
   v.optional("threads", c.threads, between("-", 1, 4096), "number of threads",
              "all processors");
+  v.optional("max_wall_time", c.max_wall_time, positive("s", 1e8),
+             "the run stops after so much time of the clock, as it does on a signal",
+             "none");
 }
 
 template <class V>
@@ -507,9 +518,11 @@ void describe(V& v, OutputConfig& c) {
              "none are taken");
   v.optional(
       "checkpoints", c.checkpoints, positive("s", longest_time),
-      "time between checkpoints, from the last of which `ehdjet run --continue` goes "
-      "on with the same bits",
+      "simulated time between checkpoints, from the last of which `ehdjet run --resume` or "
+      "`--continue` goes on with the same bits",
       "none are made");
+  v.optional("checkpoint_wall_time", c.checkpoint_wall_time, non_negative("s", 1e7),
+             "wall time between checkpoints; 0: none are made by this clock");
   v.optional("flush", c.flush, positive("s", 3600),
              "longest wall time between flushes to disk");
 }

@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <string>
 
 namespace ehdjet {
 
@@ -47,6 +48,9 @@ struct StabilityLimits {
 };
 StabilityLimits step_limits(const ChainRates& rates,
                             const ButcherTableau& method = butcher_tableau("rk4"));
+
+/// What to say of a fixed step of an explicit method that is longer than the stable one; else nothing.
+std::optional<std::string> step_warning(const Scene& scene);
 
 /// Link k of a chain scene, or (k = 1) the link that leaves the nozzle.
 LinkState link_state(const Scene& scene, std::size_t k = 1);

@@ -45,7 +45,9 @@ public:
   using StepHook = std::function<void(const ArraySimulation&)>;
   void after_each_step(StepHook hook) { hooks_.push_back(std::move(hook)); }
   /// As those of `Simulation`.
+  void between_attempts(const std::function<void()>& hook) { between_attempts_ = hook; }
   void make_checkpoints(double interval);
+  void make_checkpoints_when(std::function<bool()> wanted);
   void restore(const Checkpoint& checkpoint);
 
   /// Runs to `end_time` [s]; observers see times up to and including it.
@@ -62,6 +64,7 @@ public:
   [[nodiscard]] const RunStatistics& statistics() const { return statistics_; }
   [[nodiscard]] const ArrayDynamics& dynamics() const { return *dynamics_; }
   [[nodiscard]] std::size_t links() const; ///< of all jets
+  [[nodiscard]] std::size_t beads() const { return links() + jets(); }
 
 private:
   struct Found {
@@ -86,6 +89,7 @@ private:
   void apply_events(const std::optional<Found>& found);
   bool apply_events(std::size_t j, std::optional<std::size_t> located);
   void tell(std::size_t j);
+  [[nodiscard]] bool checkpoint_is_due() const;
   void make_checkpoint();
   void archive(const Archive& a);
   [[noreturn]] void fail(double h, const char* why);
@@ -100,6 +104,7 @@ private:
   StepSizeControl control_;
   std::vector<std::shared_ptr<ArrayObserver>> observers_;
   std::vector<StepHook> hooks_;
+  std::function<void()> between_attempts_;
   bool events_located_ = true;
 
   RunStatistics statistics_;
@@ -113,7 +118,9 @@ private:
   std::optional<std::size_t> vanishing_jet_, vanishing_bead_;       // in the last attempt
   double checkpoint_interval_ = 0;                                  // 0: none are made [s]
   double checkpoint_due_ = std::numeric_limits<double>::infinity(); // [s]
-  double restored_at_ = 0;     // time of the checkpoint that this run goes on from [s]
+  std::function<bool()> checkpoint_wanted_;
+  double restored_at_ = 0; // time of the checkpoint that this run goes on from [s]
+  Checkpoint restored_;    // what it says about observers, for those that are added later
   std::vector<JetState> seen_; // what observers are shown
   std::vector<Ledger> seen_ledgers_;
   std::vector<DepositedBead> deposited_;

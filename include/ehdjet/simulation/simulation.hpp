@@ -42,11 +42,16 @@ public:
   /// Adds an observer that calls `hook` at the end of every step; it may throw to end the run.
   using StepHook = std::function<void(const Simulation&)>;
   void after_each_step(StepHook hook);
+  /// Calls `hook` before a step is attempted again, micro steps included; it may throw to end the run, but no
+  /// RunError, which would be taken for a failure of that step.
+  void between_attempts(const std::function<void()>& hook);
 
   /// Shows observers a checkpoint at the end of the first step at or after each multiple of
   /// `interval` [s]. No step is cut for it, and none is made that a run with a later end would not
-  /// make. The integrator restarts there, so that a run that goes on from it has the same bits.
+  /// make. Checkpoints do not change the run, and a run that goes on from one has the same bits.
   void make_checkpoints(double interval);
+  /// Makes one also at the end of a step at which `wanted` says so. It is asked once per step.
+  void make_checkpoints_when(std::function<bool()> wanted);
   /// Goes on from a checkpoint of the same scene. To be called after all events have been added
   /// and before the run.
   /// errors : InputError if it is not from such a scene
@@ -62,6 +67,13 @@ public:
   /// errors : RunError with time, bead and term when the step size collapses or a state is not
   ///          a number; what observers were shown until then stands
   void run_until(double end_time);
+  /// One step of `run_until(end_time)`, which makes the same steps. False, without a step, if the jet is
+  /// there already.
+  bool step(double end_time);
+
+  /// Hands out the jet and goes on with a copy: what referred to its columns stays valid, and shows the
+  /// jet as it is now.
+  [[nodiscard]] JetState hand_out_jet();
 
   [[nodiscard]] const JetState& jet() const { return jet_; }
   [[nodiscard]] const Ledger& ledger() const { return ledger_; }
@@ -70,6 +82,9 @@ public:
   [[nodiscard]] std::span<const std::unique_ptr<Event>> events() const { return events_; }
 
 private:
+  struct Stretch;
+  void take_step(Stretch& stretch);
+  void show_rest(double end_time);
   void choose_rates();
   double choose_step(double end_time);
   [[nodiscard]] double even_macro_step(double h) const;
@@ -87,6 +102,7 @@ private:
   void apply_events(std::size_t located);
   void apply(Event& event, EventContext& context);
   void archive(const Archive& a);
+  [[nodiscard]] bool checkpoint_is_due() const;
   void make_checkpoint();
   [[nodiscard]] JetSnapshot now() const;
   [[noreturn]] void fail(double h, const char* why);
@@ -102,6 +118,7 @@ private:
   std::vector<std::unique_ptr<Event>> events_;
   std::vector<std::shared_ptr<Observer>> observers_;
   std::vector<Observer*> step_observers_, step_end_observers_; // those of them that want it
+  std::function<void()> between_attempts_;
   bool events_located_ = true;
 
   Ledger ledger_;
@@ -114,7 +131,9 @@ private:
   std::optional<std::size_t> after_event_; // the event that the next step follows
   double checkpoint_interval_ = 0;         // 0: none are made [s]
   double checkpoint_due_ = std::numeric_limits<double>::infinity(); // [s]
-  double restored_at_ = 0;       // time of the checkpoint that this run goes on from [s]
+  std::function<bool()> checkpoint_wanted_;
+  double restored_at_ = 0; // time of the checkpoint that this run goes on from [s]
+  Checkpoint restored_;    // what it says about observers, for those that are added later
   std::vector<double> snapshot_; // a state inside a step
   std::vector<DepositedBead> deposited_;
   std::vector<RefinementRecord> refined_;

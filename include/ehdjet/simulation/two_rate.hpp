@@ -79,6 +79,8 @@ public:
   /// Tries a macro step of length h [s]. `jet` and `ledger` must stay as they are until it is committed.
   /// errors : RunError of the inner beads
   StepOutcome attempt(const JetState& jet, const Ledger& ledger, double h);
+  /// As that of `Simulation`.
+  void between_attempts(const std::function<void()>& hook);
   /// Of the downstream part: error order, end state, worst component.
   [[nodiscard]] const Integrator& integrator() const { return *parts_.integrator; }
   /// The last attempt. The integrator evaluates what is still missing for dense output.
@@ -91,7 +93,8 @@ public:
   /// Forgets what is carried over from the last step; the next one computes it anew.
   void forget() { ready_ = false; }
   void count(RunStatistics& statistics) const;
-  void archive(const Archive& a);
+  /// `jet`: the chain at the time of the checkpoint.
+  void archive(const Archive& a, const JetState& jet);
 
 private:
   class Step;

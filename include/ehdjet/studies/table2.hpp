@@ -33,13 +33,13 @@ inline constexpr std::array<Table2Row, 3> table2_finer{
      {"0.05", "table2_02", 0.0005, 0, 0, 0, 0},
      {"0.02", "table2_02", 0.0002, 0, 0, 0, 0}}};
 
-/// A measured row. Beads are links of the chain.
+/// A measured row. The published counts of beads are those of links, which leave out bead 0.
 struct Table2Run {
-  double mean_beads = 0,
-         stationary_beads = 0; ///< mean over all times, over the stationary times
+  double mean_links = 0,
+         stationary_links = 0; ///< mean over all times, over the stationary times
   /// Mean just before each refinement of the stationary jet. The published run would have counted
-  /// these beads at its multiples of t_ref. NaN without refinements.
-  double beads_before = 0;
+  /// these links at its multiples of t_ref. NaN without refinements.
+  double links_before = 0;
   RunStatistics statistics;
 };
 
