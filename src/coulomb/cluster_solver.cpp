@@ -35,10 +35,14 @@ double margin_on_curves(std::size_t levels, const ClusterParameters& parameters)
   return (more ? 8 : 5) / std::max(pairs, 8.0);
 }
 /// Charges that fill space have many more pairs. Those with a dense centre have many whose errors add
-/// up around it. If a few charges move among many at rest, their net forces are small compared with the
-/// forces of the pairs.
-constexpr double margin_in_space = 0.8, margin_in_uneven_space = 0.3,
-                 margin_among_resting = 0.01;
+/// up around it.
+constexpr double margin_in_space = 0.8, margin_in_uneven_space = 0.3;
+/// The more sources there are for each target that is judged, the more charges a cluster of sources
+/// has for one of targets, and the larger its error is compared with the forces on them.
+double judged_per_source(const ClusterTree& targets, const ClusterTree& sources) {
+  return std::min(1.0, targets.clusters().front().moving
+                           / static_cast<double>(sources.charges()));
+}
 
 /// Root mean square of the net force on the targets that move. Errors are relative to it. Each force
 /// call estimates it again from the forces on a few groups of charges, with multipoles of low order,
@@ -218,9 +222,8 @@ private:
     charges_.load(groups, threads, parameters_.norm == ToleranceNorm::moving);
     clusters_[0].find(charges_, 0, parameters_.leaf);
     if (!mutual) clusters_[1].find(charges_, 1, parameters_.leaf);
-    // Few charges that move among many at rest have a margin of their own.
-    acceptance_.uneven = !acceptance_.per_bead && charges_.moves() == nullptr
-                         && (clusters_[0].uneven || (!mutual && clusters_[1].uneven));
+    acceptance_.uneven =
+        !acceptance_.per_bead && (clusters_[0].uneven || (!mutual && clusters_[1].uneven));
     const ClusterProblem problem{.pairs = kernels_.pairs,
                                  .expansions = expansions_,
                                  .charges = charges_,
@@ -256,10 +259,11 @@ private:
     const bool sorted = clusters_[0].sorted || (!mutual && clusters_[1].sorted);
     std::size_t levels = clusters_[0].tree.levels().size();
     if (!mutual) levels = std::max(levels, clusters_[1].tree.levels().size());
-    const double margin = !sorted              ? margin_on_curves(levels - 1, parameters_)
-                          : acceptance_.uneven ? margin_in_uneven_space
-                          : charges_.moves() == nullptr ? margin_in_space
-                                                        : margin_among_resting;
+    const double margin =
+        !sorted
+            ? margin_on_curves(levels - 1, parameters_)
+            : (acceptance_.uneven ? margin_in_uneven_space : margin_in_space)
+                  * judged_per_source(clusters_[mutual ? 0 : 1].tree, clusters_[0].tree);
     double allowed = margin * strictness_ * parameters_.tolerance;
     // Few sources may act on a charge through a single pair of clusters, whose error is not
     // averaged.

@@ -126,5 +126,30 @@ TEST(OneWayNorm, keeps_the_tolerance_on_the_targets) {
   }
 }
 
+// A cluster of a hundred thousand sources acts on few targets, whose forces say little of its errors.
+TEST(OneWayNorm, keeps_the_tolerance_on_few_targets_of_many_sources) {
+  const Chain jet = helix(1000, 1, 0.02, 1e-3);
+  Chain cloud;
+  for (std::size_t i = 0; i < 100'000; ++i) {
+    const auto k = static_cast<double>(i);
+    cloud.add({3 + 1e-3 * std::fmod(0.5497004779 * k, 1.),
+               std::fmod(0.8191725134 * k, 1.) * 4 - 2,
+               std::fmod(0.671043607 * k, 1.) * 4 - 2},
+              1);
+  }
+  const Force exact = force_from(charges(cloud), charges(jet), *make_direct_sum());
+  for (const std::string name : {"treecode", "fmm"})
+    for (const double tolerance : {1e-3, 1e-5, 1e-7})
+      for (const auto norm : {ToleranceNorm::global, ToleranceNorm::moving}) {
+        const auto solver =
+            make_coulomb_solver({.solver = name, .tolerance = tolerance, .norm = norm});
+        const Force force = force_from(charges(cloud), charges(jet), *solver);
+        double error = 0, size = 0;
+        for (std::size_t i = 0; i < force.x.size(); ++i)
+          error += (force[i] - exact[i]).squaredNorm(), size += exact[i].squaredNorm();
+        EXPECT_LE(std::sqrt(error / size), tolerance) << name << ' ' << tolerance;
+      }
+}
+
 } // namespace
 } // namespace ehdjet::test
