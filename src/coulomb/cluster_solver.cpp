@@ -220,7 +220,16 @@ private:
     const auto threads =
         static_cast<std::size_t>(threads_for(std::max(n, groups.front().size())));
     charges_.load(groups, threads, parameters_.norm == ToleranceNorm::moving);
-    clusters_[0].find(charges_, 0, parameters_.leaf);
+    const Known sources{.identity = mutual ? nullptr : groups.front().identity,
+                        .charges = groups.front().size(),
+                        .scales = charges_.scales(),
+                        .any_rests = charges_.moves() != nullptr};
+    const bool known = sources.identity != nullptr && sources == known_;
+    known_ = sources;
+    if (known)
+      clusters_[0].find_again(charges_, 0);
+    else
+      clusters_[0].find(charges_, 0, parameters_.leaf);
     if (!mutual) clusters_[1].find(charges_, 1, parameters_.leaf);
     acceptance_.uneven =
         !acceptance_.per_bead && (clusters_[0].uneven || (!mutual && clusters_[1].uneven));
@@ -238,7 +247,7 @@ private:
     { // the runtime may grant fewer threads than asked for
       const auto team = static_cast<std::size_t>(omp_get_num_threads());
       const auto thread = static_cast<std::size_t>(omp_get_thread_num());
-      multipoles_.gather(problem.sources, charges_.columns());
+      if (!known) multipoles_.gather(problem.sources, charges_.columns());
       multipoles_.weigh(clusters_[0].tree, acceptance_.uneven);
       if (!mutual) {
         of_targets_.gather(problem.targets, charges_.columns());
@@ -254,6 +263,15 @@ private:
     }
     coincident_pairs_ = charges_.add_close_pairs(force, far_field_->met_coincident());
   }
+
+  /// What the tree and the multipoles of the sources depend on.
+  struct Known {
+    const void* identity = nullptr;
+    std::size_t charges = 0;
+    std::pair<double, double> scales;
+    bool any_rests = false;
+    bool operator==(const Known&) const = default;
+  };
 
   double allowed_error(bool mutual) {
     const bool sorted = clusters_[0].sorted || (!mutual && clusters_[1].sorted);
@@ -276,6 +294,7 @@ private:
   Expansions expansions_;
   ScaledCharges charges_;
   Clusters clusters_[2];               ///< of sources and of targets
+  Known known_;                        ///< of the last call
   Multipoles multipoles_, of_targets_; ///< the latter only for Multipoles::weigh
   ForceScale scale_;
   Acceptance acceptance_;

@@ -25,6 +25,10 @@ struct Clusters {
   bool uneven = false;
 
   void find(ScaledCharges& charges, std::size_t group, std::size_t leaf);
+  /// Loaded again, without any change, as group `group`: only their order has to be restored.
+  void find_again(ScaledCharges& charges, std::size_t group) const {
+    if (sorted) charges.reorder(group, order_);
+  }
 
 private:
   std::vector<std::uint32_t> order_; ///< of the charges, if they have been sorted

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "close_pairs.hpp"
@@ -41,6 +42,8 @@ public:
 
   [[nodiscard]] const Group& sources() const { return groups_[0]; }
   [[nodiscard]] const Group& targets() const { return groups_[number_ - 1]; }
+  /// Of coordinates and charges. Powers of two.
+  [[nodiscard]] std::pair<double, double> scales() const { return {scale_, charge_scale_}; }
   [[nodiscard]] std::size_t length() const { return lines_ * padding; } ///< of the columns
   [[nodiscard]] ChargeColumns columns() const {
     return {column(0), column(1), column(2), column(3)};

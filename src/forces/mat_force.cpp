@@ -2,12 +2,21 @@
 
 #include "ehdjet/core/constants.hpp"
 #include "ehdjet/core/parallel.hpp"
+#include "ehdjet/coulomb/make_solver.hpp"
 #include "ehdjet/coulomb/pair_sum.hpp"
 
 #include <cstddef>
 #include <span>
+#include <utility>
 
 namespace ehdjet {
+
+MatForce::MatForce(const Plate& plate, std::optional<double> decay_time,
+                   std::unique_ptr<CoulombSolver> solver)
+    : plate_(plate)
+    , decay_time_(decay_time)
+    , solver_(std::move(solver))
+    , few_(make_direct_sum()) {}
 
 void MatForce::add_force(const Stage& stage, Vec3View force) {
   if (stage.mat == nullptr) return;
@@ -17,7 +26,6 @@ void MatForce::add_force(const Stage& stage, Vec3View force) {
   const auto of = [&](auto column) { return column.subspan(begin, count); };
   const auto r = stage.columns.position();
   ConstVec3View place{of(r.x), of(r.y), of(r.z)};
-  std::span<const double> charge = of(stage.charge);
   if (plate_.moves()) {
     y_.resize(count), z_.resize(count);
     const double dy = plate_.velocity.y() * stage.time,
@@ -30,19 +38,30 @@ void MatForce::add_force(const Stage& stage, Vec3View force) {
     });
     place.y = y_, place.z = z_;
   }
-  if (decay_time_) {
-    charge_.resize(count);
-    const double share = mat.remaining(stage.time, decay_time_), *q = charge.data();
-    double* scaled = charge_.data();
-    for_parts(0, count, [=](std::size_t from, std::size_t to) {
-      for (std::size_t k = from; k < to; ++k) scaled[k] = share * q[k];
-    });
-    charge = charge_;
+  const Vec3View out{of(force.x), of(force.y), of(force.z)};
+  const PointCharges jet{place, of(stage.charge),
+                         stage.moves.empty() ? stage.moves : of(stage.moves)};
+  if (mat.settled) {
+    settled_ = mat.settled;
+    solver_->add_force_from({settled_->place(), settled_->charge, {}, settled_.get()},
+                            seen_by(*settled_, stage.time, jet), out);
   }
-  solver_->add_force_from(
-      {mat.place(), mat.charge},
-      {place, charge, stage.moves.empty() ? stage.moves : of(stage.moves)},
-      {of(force.x), of(force.y), of(force.z)});
+  if (mat.recent.size() > 0)
+    few_->add_force_from({mat.recent.place(), mat.recent.charge},
+                         seen_by(mat.recent, stage.time, jet), out);
+}
+
+/// With the share of the charges of the mat that is left: one factor for all pairs.
+PointCharges MatForce::seen_by(const MatCharges& mat, double t, PointCharges jet) {
+  if (!decay_time_) return jet;
+  charge_.resize(jet.size());
+  const double share = mat.remaining(t, decay_time_), *q = jet.q.data();
+  double* scaled = charge_.data();
+  for_parts(0, jet.size(), [=](std::size_t from, std::size_t to) {
+    for (std::size_t k = from; k < to; ++k) scaled[k] = share * q[k];
+  });
+  jet.q = charge_;
+  return jet;
 }
 
 TermAccount MatForce::account() const {
@@ -59,8 +78,12 @@ TermAccount MatForce::account() const {
 double MatForce::potential(const Stage& stage, std::size_t bead) const {
   const Mat& mat = *stage.mat;
   const Vec3 place = plate_.fixed(stage.columns.position()[bead], stage.time);
-  return constants::coulomb * mat.remaining(stage.time, decay_time_)
-         * potential_sum(place, mat.place(), mat.charge, 0, mat.size());
+  double sum = 0;
+  mat.for_each_part([&](const MatCharges& part) {
+    sum += part.remaining(stage.time, decay_time_)
+           * potential_sum(place, part.place(), part.charge, 0, part.size());
+  });
+  return constants::coulomb * sum;
 }
 
 double MatForce::energy(const Stage& stage) {

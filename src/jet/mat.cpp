@@ -4,8 +4,44 @@
 #include <utility>
 
 namespace ehdjet {
+namespace {
 
-double Mat::remaining(double t, const std::optional<double>& decay_time) const {
+/// What is left of the charges at time t.
+void decay_to(double t, const std::optional<double>& decay_time, MatCharges& charges) {
+  if (decay_time)
+    for (double& q : charges.charge) q *= charges.remaining(t, decay_time);
+  charges.time = t;
+}
+
+void append(const MatCharges& from, MatCharges& to) {
+  const auto add = [](const std::vector<double>& more, std::vector<double>& all) {
+    all.insert(all.end(), more.begin(), more.end());
+  };
+  add(from.x, to.x), add(from.y, to.y), add(from.z, to.z), add(from.charge, to.charge);
+}
+
+void archive(const Archive& a, MatCharges& charges) {
+  std::optional<double> time;
+  if (charges.size() > 0) time = charges.time;
+  a("x", charges.x), a("y", charges.y), a("z", charges.z), a("charge", charges.charge);
+  a("time", time);
+  if (!a.is_reading()) return;
+  charges.time = time.value_or(0);
+  a.require("x", all_finite(charges.x), "is not finite");
+  a.require("y", all_finite(charges.y), "is not finite");
+  a.require("z", all_finite(charges.z), "is not finite");
+  a.require("charge", all_finite(charges.charge), "is not finite");
+  a.require("time", std::isfinite(charges.time), "is not finite");
+  const std::size_t n = charges.size();
+  a.require("charge",
+            charges.x.size() == n && charges.y.size() == n && charges.z.size() == n,
+            "has another length than the places");
+  a.require("time", time.has_value() == (n > 0), "does not agree with charge");
+}
+
+} // namespace
+
+double MatCharges::remaining(double t, const std::optional<double>& decay_time) const {
   return decay_time ? std::exp(-(t - time) / *decay_time) : 1.0;
 }
 
@@ -13,35 +49,28 @@ std::shared_ptr<const Mat> with_charge(const std::shared_ptr<const Mat>& mat,
                                        const Vec3& place, double charge, double t,
                                        const std::optional<double>& decay_time) {
   auto next = mat ? std::make_shared<Mat>(*mat) : std::make_shared<Mat>();
-  if (decay_time)
-    for (double& q : next->charge) q *= mat->remaining(t, decay_time);
-  next->x.push_back(place.x()), next->y.push_back(place.y());
-  next->z.push_back(place.z());
-  next->charge.push_back(charge), next->time = t;
+  MatCharges& recent = next->recent;
+  decay_to(t, decay_time, recent);
+  recent.x.push_back(place.x()), recent.y.push_back(place.y());
+  recent.z.push_back(place.z()), recent.charge.push_back(charge);
+  if (recent.size() < Mat::block) return next;
+  auto settled = next->settled ? std::make_shared<MatCharges>(*next->settled)
+                               : std::make_shared<MatCharges>();
+  decay_to(t, decay_time, *settled);
+  append(recent, *settled);
+  next->settled = std::move(settled), recent = {};
   return next;
 }
 
 void archive(const Archive& a, std::shared_ptr<const Mat>& mat) {
   // The lists are there without a mat, too: all checkpoints of a run have the same ones.
-  auto copy =
-      mat && !a.is_reading() ? std::make_shared<Mat>(*mat) : std::make_shared<Mat>();
-  std::optional<double> time;
-  if (mat) time = mat->time;
-  a("x", copy->x), a("y", copy->y), a("z", copy->z), a("charge", copy->charge);
-  a("time", time);
+  Mat copy = mat && !a.is_reading() ? *mat : Mat{};
+  MatCharges settled = copy.settled ? *copy.settled : MatCharges{};
+  archive(a.part("settled"), settled);
+  archive(a.part("recent"), copy.recent);
   if (!a.is_reading()) return;
-  copy->time = time.value_or(0);
-  a.require("x", all_finite(copy->x), "is not finite");
-  a.require("y", all_finite(copy->y), "is not finite");
-  a.require("z", all_finite(copy->z), "is not finite");
-  a.require("charge", all_finite(copy->charge), "is not finite");
-  a.require("time", std::isfinite(copy->time), "is not finite");
-  const std::size_t n = copy->size();
-  a.require("charge", copy->x.size() == n && copy->y.size() == n && copy->z.size() == n,
-            "has another length than the places");
-  a.require("time", time.has_value() == (n > 0), "does not agree with charge");
-  mat.reset();
-  if (n > 0) mat = std::move(copy);
+  if (settled.size() > 0) copy.settled = std::make_shared<MatCharges>(std::move(settled));
+  mat = copy.size() > 0 ? std::make_shared<Mat>(std::move(copy)) : nullptr;
 }
 
 } // namespace ehdjet

@@ -253,7 +253,7 @@ void Simulation::restore(const Checkpoint& checkpoint) {
   a.require("jet.has_embryo", may_have_embryo || !jet_.has_embryo, "is of another scene");
   a.require("jet.fed_since", dynamics_->feeds() || jet_.fed_since == 0,
             "is of another scene");
-  a.require("jet.mat.charge", c.insulating_collector || !jet_.mat, "is of another scene");
+  a.require("jet.mat", c.insulating_collector || !jet_.mat, "is of another scene");
   a.require("ledger.inserted_beads",
             statistics_.refinements
                 || ledger_.inserted_beads - ledger_.removed_beads == jet_.links(),

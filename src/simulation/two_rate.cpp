@@ -345,13 +345,15 @@ void TwoRate::learn_distant_field() {
 
 /// The charges on the collector at time t, behind those of the distant beads.
 void TwoRate::add_mat(Vec3View places, double t) {
-  const Mat& mat = *jet_->mat;
-  const double share = mat.remaining(t, options_.decay_time);
   const Vec3 way = t * parts_.downstream->constraints().plate_velocity;
-  for (std::size_t i = 0; i < mat.size(); ++i) {
-    places.set(i, mat.place()[i] + way);
-    charge_.push_back(share * mat.charge[i]);
-  }
+  std::size_t i = 0;
+  jet_->mat->for_each_part([&](const MatCharges& part) {
+    const double share = part.remaining(t, options_.decay_time);
+    for (std::size_t j = 0; j < part.size(); ++j, ++i) {
+      places.set(i, part.place()[j] + way);
+      charge_.push_back(share * part.charge[j]);
+    }
+  });
 }
 
 /// field (targets) += that of beads [first, last) with the charges that act at the time of the chain.

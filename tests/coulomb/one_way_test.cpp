@@ -55,6 +55,36 @@ TEST_P(OneWay, parts_of_a_chain_act_on_others) {
     }
 }
 
+TEST_P(OneWay, sources_that_are_known_again_act_with_the_same_bits) {
+  Chain cloud = random_chain(3000, 2, 1), other = random_chain(3000, 2, 2),
+        jet = helix(700, 1, 0.3, 1e-2);
+  const auto same_as_fresh = [&](const PointCharges& sources, const PointCharges& targets,
+                                 const std::string& what) {
+    const auto fresh = GetParam().make();
+    EXPECT_EQ(force_from(sources, targets, *solver), force_from(sources, targets, *fresh))
+        << what;
+  };
+  PointCharges known = charges(cloud);
+  known.identity = &cloud;
+  same_as_fresh(known, charges(jet), "first");
+  same_as_fresh(known, charges(jet), "again");
+  same_as_fresh(known, part(jet, 100, 640), "on fewer targets");
+  const Chain far = helix(700, 1000, 0.3, 1e-2);
+  same_as_fresh(known, charges(far), "on targets so far that the unit is another one");
+  const std::vector<std::uint8_t> moves(jet.size(), 1);
+  PointCharges moving = charges(jet);
+  moving.moves = moves;
+  same_as_fresh(known, moving, "on targets of which some may rest");
+  same_as_fresh(charges(jet), charges(cloud), "in reverse");
+  same_as_fresh(known, charges(jet), "after that");
+  Force force(jet.size());
+  solver->add_force(charges(jet), force.view());
+  same_as_fresh(known, charges(jet), "after forces of the targets on each other");
+  PointCharges others = charges(other);
+  others.identity = &other;
+  same_as_fresh(others, charges(jet), "others");
+}
+
 TEST_P(OneWay, nobody_acts_on_nobody) {
   const Chain c = random_chain(40, 1, 1);
   EXPECT_EQ(force_from({}, charges(c), *solver), Force(40));

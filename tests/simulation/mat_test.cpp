@@ -85,11 +85,78 @@ TEST(Mat, is_the_deposit) {
     const Mat& mat = *simulation->jet().mat;
     ASSERT_GT(mat.size(), 20U);
     ASSERT_EQ(mat.size(), deposit.size());
-    for (std::size_t i = 0; i < mat.size(); ++i) {
-      EXPECT_LE((mat.place()[i] - deposit[i].bead.position).norm(), 1e-15);
-      EXPECT_EQ(mat.charge[i], deposit[i].bead.charge);
-    }
-    EXPECT_EQ(mat.time, deposit.back().removal_time);
+    std::size_t i = 0;
+    mat.for_each_part([&](const MatCharges& part) {
+      for (std::size_t j = 0; j < part.size(); ++j, ++i) {
+        EXPECT_LE((part.place()[j] - deposit[i].bead.position).norm(), 1e-15);
+        EXPECT_EQ(part.charge[j], deposit[i].bead.charge);
+      }
+      EXPECT_EQ(part.time, deposit[i - 1].removal_time);
+    });
+  }
+}
+
+using SharedMat = std::shared_ptr<const Mat>;
+SharedMat with_charges(SharedMat mat, std::size_t first, std::size_t last) {
+  for (std::size_t j = first; j < last; ++j) {
+    const auto s = static_cast<double>(j);
+    mat = with_charge(mat, {0.2, std::sin(s), std::cos(1.7 * s)}, 1e-11, 1e-3 * s, 0.01);
+  }
+  return mat;
+}
+Checkpoint saved(SharedMat mat) {
+  Checkpoint lists;
+  archive(Archive::into(lists), mat);
+  return lists;
+}
+
+// Solvers keep their tree as long as it is the same object.
+TEST(Mat, shares_its_settled_charges_with_those_that_grow_from_it) {
+  const SharedMat mat = with_charges(nullptr, 0, 3 * Mat::block),
+                  later = with_charges(mat, mat->size(), mat->size() + Mat::block - 1),
+                  settled = with_charges(later, later->size(), later->size() + 1);
+  EXPECT_EQ(mat->settled, later->settled);
+  EXPECT_EQ(later->recent.size(), Mat::block - 1);
+  EXPECT_NE(settled->settled, later->settled);
+  EXPECT_EQ(settled->settled->size(), 4 * Mat::block);
+  EXPECT_EQ(settled->recent.size(), 0U);
+}
+
+TEST(Mat, from_a_checkpoint_grows_with_the_same_bits) {
+  for (const std::size_t n : {0U, 1U, 63U, 64U, 200U}) {
+    const SharedMat mat = with_charges(nullptr, 0, n);
+    SharedMat read;
+    const Checkpoint lists = saved(mat);
+    archive(Archive::from(lists), read);
+    EXPECT_EQ(saved(with_charges(read, n, n + 100)), saved(with_charges(mat, n, n + 100)));
+  }
+}
+
+// The tree of other charges must not be taken for theirs, wherever they are in memory.
+TEST(Mat, that_has_been_taken_back_leaves_nothing_behind) {
+  Chain chain(90);
+  for (std::size_t k = 0; k < chain.beads; ++k) {
+    const auto s = static_cast<double>(k);
+    chain.place(k, {2.2e-3 * s, 0.04 * std::sin(0.3 * s), 0.03 * std::cos(0.4 * s)});
+    chain.charge[k] = 2e-11;
+  }
+  const auto solver = [] {
+    return make_coulomb_solver({.solver = "fmm", .tolerance = 1e-3});
+  };
+  const Plate plate{.distance = 0.2, .velocity = Vec3::Zero()};
+  MatForce term(plate, {}, solver());
+  const SharedMat few = with_charges(nullptr, 0, 2 * Mat::block - 1);
+  for (int i = 0; i < 20; ++i) {
+    SharedMat mat = with_charge(few, {0.2, 0.1 * i, 0}, 1e-11 * i, 1, {});
+    chain.stage().mat = mat.get();
+    MatForce fresh(plate, {}, solver());
+    EXPECT_EQ(chain.force(term), chain.force(fresh));
+    chain.stage().mat = few.get();
+    EXPECT_EQ(chain.force(term), chain.force(fresh));
+    if (i % 2 == 0) continue;
+    mat = with_charges(nullptr, 0, 10); // without settled charges
+    chain.stage().mat = mat.get();
+    EXPECT_EQ(chain.force(term), chain.force(fresh));
   }
 }
 

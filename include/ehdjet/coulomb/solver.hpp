@@ -38,6 +38,9 @@ struct PointCharges {
   std::span<const double> q; ///< [C]
   /// 1: the charge moves, 0: it is at rest. Empty: all move. Used only by the norm `moving`.
   std::span<const std::uint8_t> moves = {};
+  /// Sources of add_force_from with the same identity are the same charges in the same places, in all
+  /// calls of a solver, which keeps their tree and multipoles. Null: they may be any.
+  const void* identity = nullptr;
   [[nodiscard]] std::size_t size() const { return q.size(); }
 };
 

@@ -10,12 +10,11 @@
 
 namespace ehdjet {
 
-/// The charges of the fibre on an insulating collector (model 5.2). They act on the jet and do not
-/// move, in the coordinates that are fixed to the plate (Plate::fixed). A mat is never changed, so that
-/// copies of a jet share it.
+/// Charges on an insulating collector. They act on the jet and do not move, in the coordinates that are
+/// fixed to the plate (Plate::fixed).
 ///
 /// shapes : every array (charges)          units : [m], [C]
-struct Mat {
+struct MatCharges {
   std::vector<double> x, y, z, charge; ///< charges as they are at `time`
   double time = 0;                     ///< when the last one was added [s]
 
@@ -25,10 +24,29 @@ struct Mat {
   [[nodiscard]] double remaining(double t, const std::optional<double>& decay_time) const;
 };
 
-/// A mat with one more charge, which is added at time t at `place` [m], [C], [s]. All of a mat decay at
-/// the same rate, so that one time is enough for all.
+/// The charges of the fibre on an insulating collector (model 5.2). A mat is never changed, so that
+/// copies of a jet share it; the one with a charge more shares the settled charges, so that solvers
+/// know them again.
+struct Mat {
+  std::shared_ptr<const MatCharges> settled; ///< null before the first `block` charges
+  MatCharges recent;                         ///< fewer than `block`
+  static constexpr std::size_t block = 64;
+
+  [[nodiscard]] std::size_t size() const {
+    return (settled ? settled->size() : 0) + recent.size();
+  }
+  /// For each part that has charges.
+  template <class Do>
+  void for_each_part(const Do& part) const {
+    if (settled) part(*settled);
+    if (recent.size() > 0) part(recent);
+  }
+};
+
+/// A mat with one more charge, which is added at time t at `place` [m], [C], [s]. All charges decay at
+/// the same rate, so that one time is enough for each part.
 ///
-/// cost   : O(charges)
+/// cost   : O(block), and O(charges) for one of `block` calls
 [[nodiscard]] std::shared_ptr<const Mat>
 with_charge(const std::shared_ptr<const Mat>& mat, const Vec3& place, double charge,
             double t, const std::optional<double>& decay_time);
