@@ -266,7 +266,7 @@ private:
 
   /// What the tree and the multipoles of the sources depend on.
   struct Known {
-    const void* identity = nullptr;
+    std::shared_ptr<const void> identity;
     std::size_t charges = 0;
     std::pair<double, double> scales;
     bool any_rests = false;

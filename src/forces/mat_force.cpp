@@ -41,11 +41,9 @@ void MatForce::add_force(const Stage& stage, Vec3View force) {
   const Vec3View out{of(force.x), of(force.y), of(force.z)};
   const PointCharges jet{place, of(stage.charge),
                          stage.moves.empty() ? stage.moves : of(stage.moves)};
-  if (mat.settled) {
-    settled_ = mat.settled;
-    solver_->add_force_from({settled_->place(), settled_->charge, {}, settled_.get()},
-                            seen_by(*settled_, stage.time, jet), out);
-  }
+  if (mat.settled)
+    solver_->add_force_from({mat.settled->place(), mat.settled->charge, {}, mat.settled},
+                            seen_by(*mat.settled, stage.time, jet), out);
   if (mat.recent.size() > 0)
     few_->add_force_from({mat.recent.place(), mat.recent.charge},
                          seen_by(mat.recent, stage.time, jet), out);

@@ -1,6 +1,8 @@
 #include "ehdjet/core/error.hpp"
 #include "ehdjet/coulomb/make_solver.hpp"
 
+#include <memory>
+
 #include "coulomb/all_solvers.hpp"
 #include "coulomb/reference.hpp"
 
@@ -65,7 +67,8 @@ TEST_P(OneWay, sources_that_are_known_again_act_with_the_same_bits) {
         << what;
   };
   PointCharges known = charges(cloud);
-  known.identity = &cloud;
+  const auto identity = std::make_shared<const int>(1);
+  known.identity = identity;
   same_as_fresh(known, charges(jet), "first");
   same_as_fresh(known, charges(jet), "again");
   same_as_fresh(known, part(jet, 100, 640), "on fewer targets");
@@ -81,8 +84,22 @@ TEST_P(OneWay, sources_that_are_known_again_act_with_the_same_bits) {
   solver->add_force(charges(jet), force.view());
   same_as_fresh(known, charges(jet), "after forces of the targets on each other");
   PointCharges others = charges(other);
-  others.identity = &other;
+  others.identity = std::make_shared<const int>(2);
   same_as_fresh(others, charges(jet), "others");
+}
+
+// Else other charges could get the address of those that are gone, and their tree.
+TEST(OneWayIdentity, lives_as_long_as_what_is_known_of_the_sources) {
+  const Chain cloud = random_chain(3000, 2, 1), jet = helix(700, 1, 0.3, 1e-2);
+  const auto solver = make_coulomb_solver({.solver = "fmm", .tolerance = 1e-3});
+  PointCharges known = charges(cloud);
+  known.identity = std::make_shared<const int>(1);
+  const std::weak_ptr<const void> identity = known.identity;
+  (void)force_from(known, charges(jet), *solver);
+  known.identity.reset();
+  EXPECT_FALSE(identity.expired());
+  (void)force_from(charges(jet), charges(cloud), *solver);
+  EXPECT_TRUE(identity.expired());
 }
 
 TEST_P(OneWay, nobody_acts_on_nobody) {

@@ -145,9 +145,9 @@ TEST(Mat, that_has_been_taken_back_leaves_nothing_behind) {
   };
   const Plate plate{.distance = 0.2, .velocity = Vec3::Zero()};
   MatForce term(plate, {}, solver());
-  const SharedMat few = with_charges(nullptr, 0, 2 * Mat::block - 1);
+  const SharedMat few = with_charges(nullptr, 0, 32 * Mat::block - 1);
   for (int i = 0; i < 20; ++i) {
-    SharedMat mat = with_charge(few, {0.2, 0.1 * i, 0}, 1e-11 * i, 1, {});
+    SharedMat mat = with_charge(few, {0.2, 0.1 * i, 0}, 1e-8 * i, 1, {});
     chain.stage().mat = mat.get();
     MatForce fresh(plate, {}, solver());
     EXPECT_EQ(chain.force(term), chain.force(fresh));

@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -39,8 +40,9 @@ struct PointCharges {
   /// 1: the charge moves, 0: it is at rest. Empty: all move. Used only by the norm `moving`.
   std::span<const std::uint8_t> moves = {};
   /// Sources of add_force_from with the same identity are the same charges in the same places, in all
-  /// calls of a solver, which keeps their tree and multipoles. Null: they may be any.
-  const void* identity = nullptr;
+  /// calls of a solver. It keeps their tree and multipoles, and the object, so that no others can have
+  /// its address. Null: they may be any.
+  std::shared_ptr<const void> identity = nullptr;
   [[nodiscard]] std::size_t size() const { return q.size(); }
 };
 

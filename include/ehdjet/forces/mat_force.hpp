@@ -40,9 +40,7 @@ private:
   Plate plate_;
   std::optional<double> decay_time_;            // tau [s]
   std::unique_ptr<CoulombSolver> solver_, few_; // of the settled and the recent charges
-  // Lives at least until the next call: no other charges get its address, which is its identity.
-  std::shared_ptr<const MatCharges> settled_;
-  std::vector<double> y_, z_, charge_, force_; // of the jet, as the mat sees it
+  std::vector<double> y_, z_, charge_, force_;  // of the jet, as the mat sees it
 };
 
 } // namespace ehdjet
