@@ -4,6 +4,7 @@
 #include "ehdjet/core/error.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 namespace ehdjet {
@@ -51,6 +52,10 @@ Balance::Balance(const JetDynamics& dynamics,
     }
     if (!account.channel.name.empty()) add_channel(account.channel);
     own_.push_back(index_of(channels_, account.channel.name));
+    const auto columns = term->columns();
+    if (std::ranges::any_of(columns,
+                            [](const BeadColumn& c) { return c.drying.has_value(); }))
+      drying_ = own_.size() - 1;
   }
   if (constraints.inflow != nullptr) add_channel(nozzle);
   if (constraints.ends.first || constraints.ends.last) add_channel(held);
@@ -149,7 +154,51 @@ std::span<const Flow> Balance::flows(const JetState& jet) {
     flow.energy += exchange.supported[s].energy;
     flow.momentum += exchange.supported[s].momentum;
   }
+  if (drying_ != none) {
+    const Flow vapour = drying(jet);
+    flows_[own_[drying_]].energy += vapour.energy;
+    flows_[own_[drying_]].momentum += vapour.momentum;
+  }
   return flows_;
+}
+
+// By a central difference over a change of 1e-5 of the volume: a formula for each law of the stress, the
+// surface and the near field would say the same.
+Flow Balance::drying(const JetState& jet) {
+  constexpr double change = 1e-5;
+  const std::size_t n = jet.beads(), place = jet.table->drying()->column;
+  Stage stage = chain_.stage();
+  stage.feed = nullptr; // the fresh fluid that is mixed in comes with the feed
+  rates_.assign(jet.y.size(), 0.0);
+  const JetColumns<double> rates{rates_, n};
+  dynamics_.terms()[drying_]->set_column_rates(stage, rates);
+  const std::span<double> rate = rates.column(place);
+  rate[0] = 0;
+  for (const std::size_t k : chain_.frozen()) rate[k] = 0;
+  double largest = 0;
+  for (const double r : rate) largest = std::max(largest, std::abs(r));
+  if (largest == 0) return {};
+  const double dt = change / largest;
+  const auto after = [&](double time) {
+    changed_ = jet.y;
+    const std::span<double> lost = JetColumns<double>{changed_, n}.column(place);
+    for (std::size_t k = 0; k < n; ++k) lost[k] += time * rate[k];
+    return content_of_masses(jet.time, changed_);
+  };
+  const Flow later = after(dt), earlier = after(-dt);
+  return {.energy = (later.energy - earlier.energy) / (2 * dt),
+          .momentum = (later.momentum - earlier.momentum) / (2 * dt)};
+}
+
+Flow Balance::content_of_masses(double t, std::span<const double> y) {
+  const Stage& stage = chain_.at(t, y);
+  const JetEnergies motion = motion_of(chain_);
+  Flow content{.energy = motion.kinetic, .momentum = motion.momentum};
+  const auto& terms = dynamics_.terms();
+  for (std::size_t i = 0; i < terms.size(); ++i)
+    if (store_of_[i] != none && !accounts_[i].of_charges_only)
+      content.energy += terms[i]->energy(stage);
+  return content;
 }
 
 // With the force f of a term and its energy U,

@@ -38,7 +38,9 @@ void CoulombForce::add_force(const Stage& stage, Vec3View force) {
 
 TermAccount CoulombForce::account() const {
   return {.energy = "coulomb_energy",
-          .energy_meaning = "of all pairs of charges, as they act"};
+          .energy_meaning = "of all pairs of charges, as they act",
+          .channel = {},
+          .of_charges_only = true};
 }
 
 double CoulombForce::energy(const Stage& stage) {

@@ -57,6 +57,17 @@ std::vector<BeadColumn> Evaporation::columns() const {
                         .dry = solution_.polymer_volume()}}};
 }
 
+TermAccount Evaporation::account() const {
+  return {.channel = {.name = "evaporation",
+                      .energy = "evaporation_exchange",
+                      .energy_meaning =
+                          "brought in so far by evaporation: vapour leaves, and "
+                          "energies change with the volume",
+                      .momentum = "vapour_impulse",
+                      .momentum_meaning =
+                          "so far, of vapour that leaves with the velocity of its bead"}};
+}
+
 void Evaporation::bind(const BeadTable& table) {
   lost_ = table.find_integrated(column).value();
 }

@@ -218,7 +218,8 @@ TermAccount ImageForce::account() const {
           .energy_meaning = "of the charges and the images of all others",
           .channel = {.name = "images",
                       .momentum = "image_impulse",
-                      .momentum_meaning = "so far, of the images of other charges"}};
+                      .momentum_meaning = "so far, of the images of other charges"},
+          .of_charges_only = true};
 }
 
 double ImageForce::potential_of_others(const Stage& stage, std::size_t bead,

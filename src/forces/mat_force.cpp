@@ -70,7 +70,8 @@ TermAccount MatForce::account() const {
                       .energy_meaning =
                           "brought in so far by the motion and the decay of the mat",
                       .momentum = "mat_impulse",
-                      .momentum_meaning = "so far, of the mat"}};
+                      .momentum_meaning = "so far, of the mat"},
+          .of_charges_only = true};
 }
 
 double MatForce::potential(const Stage& stage, std::size_t bead) const {

@@ -66,8 +66,10 @@ void archive(const Archive& a, std::shared_ptr<const Mat>& mat) {
   // The lists are there without a mat, too: all checkpoints of a run have the same ones.
   Mat copy = mat && !a.is_reading() ? *mat : Mat{};
   MatCharges settled = copy.settled ? *copy.settled : MatCharges{};
-  archive(a.part("settled"), settled);
-  archive(a.part("recent"), copy.recent);
+  archive(a, copy.recent);
+  const Archive of_settled = a.part("settled");
+  // Checkpoints from before charges settled have them all in one part.
+  if (!a.is_reading() || !of_settled.names().empty()) archive(of_settled, settled);
   if (!a.is_reading()) return;
   if (settled.size() > 0) copy.settled = std::make_shared<MatCharges>(std::move(settled));
   mat = copy.size() > 0 ? std::make_shared<Mat>(std::move(copy)) : nullptr;

@@ -190,10 +190,6 @@ void check_evaporation(const SceneConfig& c, const SceneText& text) {
                   "nozzle.density = {} kg/m^3, and a solution of [evaporation] has {:.4g} "
                   "kg/m^3: must agree within {:.0f} %",
                   c.nozzle->density, density, 100 * tolerated));
-  if (c.output.budget)
-    text.fail("output.budget",
-              "output.budget and [evaporation]: a budget does not know what vapour takes "
-              "away. Remove one");
 }
 
 } // namespace ehdjet

@@ -36,9 +36,9 @@ void check_near_field(const SceneConfig& c, const Refuse& refuse) {
         "near_field",
         "coulomb.near_field = \"fixed\" and output.budget: the push of a thread of fixed "
         "radius has no energy. Take \"free-surface\", or remove output.budget");
-  constexpr double shortest = 6; // radii
+  constexpr double shortest = 6, round_off = 1e-12; // radii
   if (c.nozzle && c.nozzle->inflow == InflowKind::pump && !softens_pairs(c)
-      && c.nozzle->link_length < shortest * c.nozzle->radius)
+      && c.nozzle->link_length < (shortest - round_off) * c.nozzle->radius)
     refuse(
         "softened_pairs",
         fmt::format(

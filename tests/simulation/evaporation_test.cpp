@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "support/budgeted.hpp"
 #include "support/rheologies.hpp"
 #include "support/scenes.hpp"
 
@@ -183,6 +184,48 @@ TEST(DryingJet, that_is_pumped_brings_fresh_fluid) {
   double wet = 0;
   for (std::size_t k = 1; k < jet.beads(); ++k) wet += jet.volume[k];
   EXPECT_NEAR(wet / (*n.flow_rate * 5e-3 + n.section() * n.link_length / 2), 1, 1e-12);
+}
+
+double residual(const FinishedRun& run) {
+  return std::max(std::abs(run.last().at("energy_residual_relative")),
+                  std::abs(run.last().at("momentum_residual_relative")));
+}
+
+// Volume, modulus and relaxation time change with the solvent, and with them what a link stores.
+TEST(DryingJet, has_a_budget_that_closes_with_the_tolerance_for_each_law) {
+  for (const NamedRheology& r : rheologies_of_pvp()) {
+    if (r.name == "kelvin_voigt" || r.name == "herschel_bulkley") continue;
+    for (const double rtol : {1e-5, 1e-7}) {
+      Scene scene = drying_jet("dormand-prince", rtol);
+      scene.config.viscoelasticity = r.fluid;
+      scene.config.surface_tension->form = SurfaceTensionForm::line;
+      scene.config.coulomb->near_field = NearFieldForm::free_surface;
+      scene.config.gravity = GravityConfig{.acceleration = 9.80665};
+      const FinishedRun run(scene, 3e-3, 1e-3);
+      EXPECT_LE(residual(run), rtol) << r.name << ' ' << rtol;
+      EXPECT_GT(std::abs(run.last().at("evaporation_exchange")),
+                1e-4 * run.last().at("kinetic_energy"));
+      EXPECT_NE(run.last().at("vapour_impulse_x"), 0);
+    }
+  }
+}
+
+TEST(DryingJet, has_a_budget_that_closes_whatever_happens_to_it) {
+  Scene refined = drying_jet("dormand-prince", 1e-6), pumped = refined,
+        implicit = drying_jet("ros34pw2", 1e-7), two_rates = drying_jet("two-rate", 1e-7);
+  refined.config.refinement = RefinementConfig{.length = 0.4 * cm, .interval = 1e-3};
+  NozzleConfig& n = *pumped.config.nozzle;
+  n.inflow = InflowKind::pump, n.velocity.reset();
+  n.flow_rate = 65e-6 / 3600, n.link_length = 6 * n.radius;
+  pumped.config.surface_tension->form = SurfaceTensionForm::line;
+  for (const auto& [what, scene, end] : {std::tuple{"refined", refined, 12e-3},
+                                         {"pumped", pumped, 5e-3},
+                                         {"implicit", implicit, 4e-3},
+                                         {"two rates", two_rates, 6e-3}}) {
+    const FinishedRun run(scene, end, 1e-3);
+    EXPECT_LE(residual(run), 1e-6) << what;
+    EXPECT_NE(run.last().at("evaporation_exchange"), 0) << what;
+  }
 }
 
 } // namespace

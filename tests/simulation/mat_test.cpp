@@ -132,6 +132,23 @@ TEST(Mat, from_a_checkpoint_grows_with_the_same_bits) {
   }
 }
 
+// As before charges settled: all in one part.
+TEST(Mat, of_an_older_checkpoint_is_read) {
+  const SharedMat mat = with_charges(nullptr, 0, 100);
+  Checkpoint old;
+  for (const char* list : {"x", "y", "z", "charge"}) {
+    const Checkpoint lists = saved(mat);
+    old[list] = lists.at(std::string("settled.") + list);
+    const auto& recent = lists.at(list);
+    old[list].insert(old[list].end(), recent.begin(), recent.end());
+  }
+  old["time"] = {0.1};
+  SharedMat read;
+  archive(Archive::from(old), read);
+  EXPECT_EQ(read->size(), 100U);
+  EXPECT_EQ(with_charges(read, 100, 101)->settled->size(), 101U);
+}
+
 // The tree of other charges must not be taken for theirs, wherever they are in memory.
 TEST(Mat, that_has_been_taken_back_leaves_nothing_behind) {
   Chain chain(90);

@@ -32,9 +32,10 @@ struct JetEnergies {
 ///     dE/dt = sum of the channels' energies,  dP/dt = sum of their momenta
 ///
 /// It is a sum over the force terms, each of which accounts for itself, over what holds or leads
-/// beads, and over the events.
+/// beads, over the vapour of a jet that dries, and over the events.
 ///
-/// cost : `flows` O(n), and O(n) per bead that does not move freely; `energies` what the energies of
+/// cost : `flows` O(n), and O(n) per bead that does not move freely; in a jet that dries also twice the energies
+///        that depend on volumes; `energies` what the energies of
 ///        the terms cost
 class Balance {
 public:
@@ -67,6 +68,11 @@ private:
   void add_flows(const ActingChain& chain, ForceTerm& term, const TermAccount& account,
                  Exchange& exchange);
 
+  /// Of what evaporates. Replaces the stage of `chain_`.
+  Flow drying(const JetState& jet);
+  /// Kinetic energy, all stored ones that depend on masses or volumes, and momentum.
+  Flow content_of_masses(double t, std::span<const double> y);
+
   const JetDynamics& dynamics_;
   std::vector<Channel> channels_;
   std::vector<TermAccount> accounts_; // of all terms
@@ -74,9 +80,11 @@ private:
   std::vector<TermAccount> stores_;   // of the terms that store energy, one per name
   std::vector<std::size_t> store_of_; // of each term, if it stores energy
   std::array<std::size_t, supports> support_channel_{};
+  std::size_t drying_ =
+      static_cast<std::size_t>(-1); // the term by which a jet dries, if it does
   ActingChain chain_, chain_before_;
   std::vector<Support> support_of_;
-  std::vector<double> force_;
+  std::vector<double> force_, rates_, changed_;
   std::vector<Flow> flows_;
 };
 

@@ -51,6 +51,8 @@ public:
   Evaporation(AirFlow air, const Solution& solution, const Vaporisation& vaporisation);
   [[nodiscard]] std::string_view name() const override { return "evaporation"; }
   void add_force(const Stage& /*stage*/, Vec3View /*force*/) override {} // it has none
+  /// What vapour takes along is added by Balance, as it concerns the energies of all terms.
+  [[nodiscard]] TermAccount account() const override;
   [[nodiscard]] std::vector<BeadColumn> columns() const override;
   void bind(const BeadTable& table) override;
   void set_column_rates(const Stage& stage, JetColumns<double> rates) override;

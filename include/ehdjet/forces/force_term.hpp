@@ -36,6 +36,8 @@ struct TermAccount {
   /// mean that the momentum comes from outside; without them the forces between the beads sum to
   /// zero.
   Channel channel = {};
+  /// The energy depends on places and charges only, not on masses and volumes.
+  bool of_charges_only = false;
   /// `add_power` tells all that the force exchanges with the outside, as if the term stored an energy.
   bool tells_all_power = false;
 };
