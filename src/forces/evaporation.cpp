@@ -72,36 +72,55 @@ void Evaporation::bind(const BeadTable& table) {
   lost_ = table.find_integrated(column).value();
 }
 
+/// de/dt of link k, whose ends move with these velocities, and -d(de/dt)/de.
+Evaporation::Rate Evaporation::rate(const Stage& stage, std::size_t k, const Vec3& v,
+                                    const Vec3& v_upstream) const {
+  const Links& links = stage.links();
+  const auto x = stage.columns.position().x;
+  const double lost = stage.columns.column(lost_)[k], l = links.length[k],
+               volume = stage.volume[k];
+  const Vec3 w = (v + v_upstream) / 2 - air_.velocity((x[k] + x[links.upstream(k)]) / 2);
+  const double radius = std::sqrt(volume / (std::numbers::pi * l));
+  const double sherwood =
+      still_ + driven_ * std::cbrt(2 * radius * w.norm() / air_.kinematic_viscosity());
+  const double left = std::max((end_ - lost) / ending_, -1.0);
+  const double fresh_volume = volume / (1 - lost);
+  return {.value = -std::expm1(-left) * conductance_ * l * sherwood / fresh_volume,
+          .decay = std::exp(-left) / ending_ * conductance_ * l * sherwood / fresh_volume};
+}
+
 void Evaporation::set_column_rates(const Stage& stage, JetColumns<double> rates) {
   const Links& links = stage.links();
-  const auto r = stage.columns.position(), v = stage.columns.velocity();
-  const double *lost = stage.columns.column(lost_).data(), *l = links.length.data(),
-               *volume = stage.volume.data();
+  const auto v = stage.columns.velocity();
   double* out = rates.column(lost_).data();
-  const double nu = air_.kinematic_viscosity();
-  const auto rate = [&](std::size_t k, std::size_t upstream, const Vec3& v_upstream) {
-    const Vec3 w = (v[k] + v_upstream) / 2 - air_.velocity((r.x[k] + r.x[upstream]) / 2);
-    const double radius = std::sqrt(volume[k] / (std::numbers::pi * l[k]));
-    const double sherwood = still_ + driven_ * std::cbrt(2 * radius * w.norm() / nu);
-    const double left = std::max((end_ - lost[k]) / ending_, -1.0);
-    const double fresh_volume = volume[k] / (1 - lost[k]);
-    return -std::expm1(-left) * conductance_ * l[k] * sherwood / fresh_volume;
-  };
   for (std::size_t k = stage.targets.begin; k < links.head; ++k) out[k] = 0;
   for_parts(links.beads.begin, links.beads.end, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) {
-      const std::size_t upstream = links.upstream(k);
-      out[k] = rate(k, upstream, v[upstream]);
-    }
+    for (std::size_t k = begin; k < end; ++k)
+      out[k] = rate(stage, k, v[k], v[links.upstream(k)]).value;
   });
   // A landed bead keeps the velocity of its impact as a record, but it rests on the plate.
   for (const LandedBead& b : stage.landed)
     if (const std::size_t k = b.bead + 1; k >= links.beads.begin && k < links.beads.end)
-      out[k] = rate(k, b.bead, stage.plate_velocity);
-  if (stage.feed != nullptr && links.beads.begin <= 1 && links.beads.end > 1) {
-    const double fresh_volume = stage.volume[1] / (1 - lost[1]);
-    out[1] -= stage.feed->flow_rate / fresh_volume * lost[1]; // fresh fluid is mixed in
-  }
+      out[k] = rate(stage, k, v[k], stage.plate_velocity).value;
+  if (stage.feed != nullptr && links.beads.begin <= 1 && links.beads.end > 1)
+    out[1] -= mixing(stage) * stage.columns.column(lost_)[1];
+}
+
+/// Fresh fluid that is mixed into link 1, over the volume that it had without evaporation [1/s].
+double Evaporation::mixing(const Stage& stage) const {
+  const double fresh_volume = stage.volume[1] / (1 - stage.columns.column(lost_)[1]);
+  return stage.feed->flow_rate / fresh_volume;
+}
+
+// The end of the evaporation is the stiff part: thin links are solid within a fraction of a step. How the
+// rate depends on the radius and on the velocity is slow.
+void Evaporation::add_derivatives(const Stage& stage, LinkDerivatives& out) {
+  const Links& links = stage.links();
+  const auto v = stage.columns.velocity();
+  LinkDerivatives::Column& own = out.add_column(lost_);
+  for (std::size_t k = links.first; k <= links.last; ++k)
+    own.relaxation[k] += rate(stage, k, v[k], v[links.upstream(k)]).decay;
+  if (stage.feed != nullptr && links.first <= 1) own.relaxation[1] += mixing(stage);
 }
 
 } // namespace ehdjet

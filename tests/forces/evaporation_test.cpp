@@ -69,6 +69,11 @@ public:
     table_ = std::move(table);
   }
   [[nodiscard]] double rate(double lost, std::optional<Feed> feed = {}) {
+    return rate_and_decay(lost, feed).first;
+  }
+  /// de/dt, and what an implicit step takes for -d(de/dt)/de.
+  [[nodiscard]] std::pair<double, double> rate_and_decay(double lost,
+                                                         std::optional<Feed> feed = {}) {
     JetState jet = blank_jet(table_, 2);
     constexpr double l = 1e-3;
     jet.columns().position().set(1, {l, 0, 0});
@@ -82,7 +87,13 @@ public:
     std::vector<double> rates(jet.y.size());
     term_.set_column_rates(stage, {rates, 2});
     EXPECT_EQ(rates[12], 0);
-    return rates[13];
+    LinkDerivatives derivatives;
+    derivatives.reset(2);
+    term_.add_derivatives(stage, derivatives);
+    EXPECT_EQ(derivatives.columns().size(), 1U);
+    EXPECT_EQ(derivatives.columns()[0].place, 6U);
+    EXPECT_EQ(derivatives.columns()[0].relaxation[0], 0);
+    return {rates[13], derivatives.columns()[0].relaxation[1]};
   }
   [[nodiscard]] double lost_after(double t) {
     FunctionSystem system([this](double, std::span<const double> y, std::span<double> r) {
@@ -124,6 +135,23 @@ TEST(Evaporation, of_a_pure_solvent_follows_its_closed_form) {
     EXPECT_NEAR(1 - link.lost_after(t), std::pow(radius / a0, 2), 1e-9) << t;
   }
   EXPECT_NEAR(link.time_of(1 - 1e-6), 9.406954884e-3, 1e-7);
+}
+
+// The end is stiff: the rate falls to zero over a hundredth of the volume. Before, it changes slowly.
+TEST(Evaporation, has_the_derivative_of_its_end) {
+  const Solution pvp{1200, 789, 0.1};
+  Link link(1e-6, 1, pvp,
+            {.diffusivity = ethanol_diffusivity, .saturation = ethanol_vapour});
+  const double end = pvp.lost_at(0.9), step = 1e-7;
+  for (const double lost : {0.99 * end, 0.995 * end, end}) {
+    const double slope = (link.rate(lost - step) - link.rate(lost + step)) / (2 * step);
+    EXPECT_NEAR(link.rate_and_decay(lost).second / slope, 1, 0.03) << lost;
+  }
+  const double start = link.rate_and_decay(0).second;
+  EXPECT_LT(start, 1e-9 * link.rate_and_decay(end).second);
+  const Feed feed{.flow_rate = 1e-9};
+  EXPECT_NEAR(link.rate_and_decay(0, feed).second - start,
+              feed.flow_rate / (pi * 1e-12 * 1e-3), 1e-3);
 }
 
 // Times apart from this program: 158.7 ms in humid air and 22.8 ms.

@@ -56,8 +56,16 @@ public:
   [[nodiscard]] std::vector<BeadColumn> columns() const override;
   void bind(const BeadTable& table) override;
   void set_column_rates(const Stage& stage, JetColumns<double> rates) override;
+  void add_derivatives(const Stage& stage, LinkDerivatives& derivatives) override;
 
 private:
+  struct Rate {
+    double value, decay; // [1/s]
+  };
+  [[nodiscard]] Rate rate(const Stage& stage, std::size_t k, const Vec3& v,
+                          const Vec3& v_upstream) const;
+  [[nodiscard]] double mixing(const Stage& stage) const;
+
   AirFlow air_;
   Solution solution_;
   double still_, driven_; // Sh = still + driven Re^(1/3)
