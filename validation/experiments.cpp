@@ -136,7 +136,7 @@ void observations(Suite& suite) {
       "terminal diameter of Fridrikh et al. (2003) for 2 mL/h and 100 nA: 0.840 um",
       relative(terminal_diameter(0.021133, 2e-6 / 3600, 1e-7, 100), 0.840e-6), 1e-3);
 
-  const Window window = suite.pick<Window>({0.08, 0.1}, {0.1, 0.15});
+  const Window window = suite.pick<Window>({0.08, 0.1}, {0.14, 0.2});
   std::vector<Case> cases{{"as it is", {}},
                           {"potential 20000 V", {"field.potential=20000"}}};
   if (suite.full()) {
