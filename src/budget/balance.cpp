@@ -154,10 +154,10 @@ std::span<const Flow> Balance::flows(const JetState& jet) {
     flow.energy += exchange.supported[s].energy;
     flow.momentum += exchange.supported[s].momentum;
   }
-  if (drying_ != none) {
+  if (drying_) {
     const Flow vapour = drying(jet);
-    flows_[own_[drying_]].energy += vapour.energy;
-    flows_[own_[drying_]].momentum += vapour.momentum;
+    flows_[own_[*drying_]].energy += vapour.energy;
+    flows_[own_[*drying_]].momentum += vapour.momentum;
   }
   return flows_;
 }
@@ -171,7 +171,7 @@ Flow Balance::drying(const JetState& jet) {
   stage.feed = nullptr; // the fresh fluid that is mixed in comes with the feed
   rates_.assign(jet.y.size(), 0.0);
   const JetColumns<double> rates{rates_, n};
-  dynamics_.terms()[drying_]->set_column_rates(stage, rates);
+  dynamics_.terms()[*drying_]->set_column_rates(stage, rates);
   const std::span<double> rate = rates.column(place);
   rate[0] = 0;
   for (const std::size_t k : chain_.frozen()) rate[k] = 0;

@@ -278,11 +278,11 @@ private:
     std::size_t levels = clusters_[0].tree.levels().size();
     if (!mutual) levels = std::max(levels, clusters_[1].tree.levels().size());
     const double margin =
-        !sorted
-            ? margin_on_curves(levels - 1, parameters_)
-            : (acceptance_.uneven ? margin_in_uneven_space : margin_in_space)
-                  * judged_per_source(clusters_[mutual ? 0 : 1].tree, clusters_[0].tree);
+        !sorted ? margin_on_curves(levels - 1, parameters_)
+                : (acceptance_.uneven ? margin_in_uneven_space : margin_in_space);
     double allowed = margin * strictness_ * parameters_.tolerance;
+    if (sorted && !acceptance_.per_bead)
+      allowed *= judged_per_source(clusters_[mutual ? 0 : 1].tree, clusters_[0].tree);
     // Few sources may act on a charge through a single pair of clusters, whose error is not
     // averaged.
     if (acceptance_.per_bead && !mutual) allowed /= parameters_.order + 1;

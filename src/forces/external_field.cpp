@@ -28,7 +28,8 @@ TermAccount ExternalField::account() const {
                       .channel = {.name = "field",
                                   .momentum = "field_impulse",
                                   .momentum_meaning = "so far, of the field",
-                                  .axial = true}};
+                                  .axial = true},
+                      .of_charges_only = true};
   if (options_.is_switched || options_.charging_time) {
     account.channel.energy = "field_supply";
     account.channel.energy_meaning = "brought in so far by the change of the field in time";

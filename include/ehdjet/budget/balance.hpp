@@ -34,9 +34,8 @@ struct JetEnergies {
 /// It is a sum over the force terms, each of which accounts for itself, over what holds or leads
 /// beads, over the vapour of a jet that dries, and over the events.
 ///
-/// cost : `flows` O(n), and O(n) per bead that does not move freely; in a jet that dries also twice the energies
-///        that depend on volumes; `energies` what the energies of
-///        the terms cost
+/// cost : `flows` O(n), and O(n) per bead that does not move freely; `energies` what the energies of
+///        the terms cost. In a jet that dries `flows` computes twice those that depend on volumes
 class Balance {
 public:
   /// Of the terms and constraints of `dynamics`, which outlives the balance, with channels for these
@@ -80,8 +79,7 @@ private:
   std::vector<TermAccount> stores_;   // of the terms that store energy, one per name
   std::vector<std::size_t> store_of_; // of each term, if it stores energy
   std::array<std::size_t, supports> support_channel_{};
-  std::size_t drying_ =
-      static_cast<std::size_t>(-1); // the term by which a jet dries, if it does
+  std::optional<std::size_t> drying_; // the term by which the jet dries
   ActingChain chain_, chain_before_;
   std::vector<Support> support_of_;
   std::vector<double> force_, rates_, changed_;
